@@ -136,8 +136,8 @@ Recess SlidingContacts::recessAsked(int link, const Pose& tissue_T_link,
     if (body != nullptr && touch->contact.wanders) {
       place = tissue_T_shape * nearestPoint(*body, tissue_T_shape.inverse() * place);
     }
-    press.height += share * ((lowest - place + touch->contact.bulge).dot(press.axis) +
-                             touch->compliance.normal * touch->spring.multiplier);
+    press.height +=
+        share * ((lowest - place + touch->contact.bulge).dot(press.axis) + rimRecess(*touch));
     for (const auto& [node, weight] : touch->spring.carriers) shares[node] += share * weight;
   }
   for (const auto& [node, share] : shares) press.shares.push_back({node, share});

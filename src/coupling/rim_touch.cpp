@@ -30,6 +30,7 @@ RimCompliance limited(const RimCompliance& of_edge, double most) {
 // Of the springs between the tool's face and the lattice.
 TouchCompliance complianceOf(const SlidingContacts::ContactConstraint& touch,
                              const Tissue& tissue) {
+  if (!touch.contact.columns.empty()) return touch.of_columns;
   const Rim& rim = touch.contact.rim;
   TouchCompliance sum;
   if (rim.share <= 0.0 || touch.firm_stiffness <= 0.0) return sum;
@@ -78,12 +79,20 @@ void rideEdge(const Pose& moved, SlidingContacts::ContactConstraint& touch) {
   Rim& rim = touch.contact.rim;
   rim.drawn_at = moved * rim.drawn_at;
   rim.drawn_aside = moved.linear() * rim.drawn_aside * moved.linear().transpose();
+  for (RimColumn& column : touch.contact.columns) {
+    column.friction = moved.linear() * column.friction * moved.linear().transpose();
+  }
   showOnTool(touch);
+}
+
+double rimRecess(const SlidingContacts::ContactConstraint& touch) {
+  return touch.contact.columns.empty() ? touch.compliance.normal * touch.spring.multiplier
+                                       : touch.column_recess;
 }
 
 void putPlane(SlidingContacts::ContactConstraint& touch) {
   ContactSpring& spring = touch.spring;
-  const double inside = touch.entry + touch.recess + touch.compliance.normal * spring.multiplier;
+  const double inside = touch.entry + touch.recess + rimRecess(touch);
   spring.plane_point = touch.tool_point - inside * spring.normal;
   spring.turning = spring.multiplier * touch.contact.turn;
   showOnTool(touch);

@@ -12,10 +12,14 @@ namespace robot_tissue {
 // stiffness and friction.
 void soften(const Tissue& tissue, SlidingContacts::ContactConstraint& touch);
 
-// The edge that the surface is drawn at goes with the tool.
+// The edge that the surface is drawn at goes with the tool, and the ways along its face turn.
 void rideEdge(const Pose& moved, SlidingContacts::ContactConstraint& touch);
 
-// The spring's plane: below the tool's by what the multiplier presses the rim together.
+// How deep the plane is in the tool (m): what the multiplier presses the rim together, or those of
+// all touches the columns.
+double rimRecess(const SlidingContacts::ContactConstraint& touch);
+
+// The spring's plane: below the tool's by that, too.
 void putPlane(SlidingContacts::ContactConstraint& touch);
 
 // How deep the point is inside the edges goes half of the way from what it was a round before. The

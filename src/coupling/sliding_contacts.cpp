@@ -52,6 +52,7 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     touch.stuck = touch.spring.multiplier > 0.0 ? 1.0 : shareOfTouch(moved, touch);
     anchor(pose, touch);
   }
+  softenColumns(tissue);
 }
 
 // How the link moved since the last commit.
@@ -98,6 +99,7 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
   }
   wander(contacts, wandering, pose, tissue, held);
   forgetLost(held);
+  softenColumns(tissue);
   guessRecesses(pose, tissue);
   stickFirst(tissue);
 }
@@ -112,6 +114,7 @@ bool SlidingContacts::update(const Tracked& tracked, const ContactSet& found, co
   is_settled_ = whole && updateMultipliers(tissue);
   if (whole && !renewRecesses(pose, tissue)) is_settled_ = false;
   if (!whole) pressHarder(tissue);
+  softenColumns(tissue);
   for (std::size_t i = 0; i < tracked.size(); ++i) {
     ContactConstraint& touch = touches_[i];
     touch.last_way = std::exchange(touch.way, std::nullopt);
@@ -130,6 +133,7 @@ bool SlidingContacts::update(const Tracked& tracked, const ContactSet& found, co
   }
   if (!wander(found, tracked, pose, tissue, held)) is_settled_ = false;
   if (!is_settled_) calmPlanes(pose);
+  softenColumns(tissue);
   forgetLost(held);
   return is_settled_;
 }
@@ -191,7 +195,8 @@ double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& ti
 // slack.
 bool SlidingContacts::take(const Contact& contact, KnownTouches& known, const RobotPose& pose,
                            const Tissue& tissue, const Held& held) {
-  const double depth = contact.depth_m - recessOf(contact.link);
+  const double depth =
+      contact.depth_m - recessOf(contact.link) - columnRecess(contact.link, contact.columns);
   ContactConstraint* touch = known.find(contact, tissue.surface());
   if (touch == nullptr) {
     add(contact, known, pose, tissue, held);

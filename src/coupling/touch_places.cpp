@@ -113,6 +113,7 @@ bool SlidingContacts::takeSurface(const RobotPose& pose, const Tissue& tissue) {
   }
   touches_ = std::move(here);
   if (is_settled_) goOnAsSolved(surface);
+  for (ContactConstraint& touch : touches_) showColumns(tissue, touch);
   commit(pose, tissue);
   return is_settled_;
 }

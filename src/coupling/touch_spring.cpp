@@ -23,8 +23,9 @@ double frictionStiffness(double stiffness) {
 
 Vec3 planePointOf(const Contact& contact, const Tissue& tissue) {
   // What is at a rim is not to come out.
-  const double most = contact.rim.edges.empty() ? tuning::kMostPush * tissue.lattice().spacing()
-                                                : std::numeric_limits<double>::infinity();
+  const bool is_at_rim = !contact.rim.edges.empty() || !contact.columns.empty();
+  const double most = is_at_rim ? std::numeric_limits<double>::infinity()
+                                : tuning::kMostPush * tissue.lattice().spacing();
   return contact.point + std::min(contact.depth_m, most) * contact.normal;
 }
 

@@ -41,7 +41,9 @@ bool SlidingContacts::wander(const ContactSet& found, const Tracked& tracked, co
   for (std::size_t place = 0; place < places.size(); ++place) {
     if (is_taken[place] != 0) continue;
     add(*places[place], now, pose, tissue, held);
-    is_settled = places[place]->depth_m <= slackOf(touches_.back(), tissue) && is_settled;
+    const double depth =
+        places[place]->depth_m - columnRecess(places[place]->link, places[place]->columns);
+    is_settled = depth <= slackOf(touches_.back(), tissue) && is_settled;
   }
   for (std::size_t i = 0; i < known; ++i) {
     if (!touches_[i].contact.wanders || touches_[i].found) continue;

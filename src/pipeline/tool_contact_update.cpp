@@ -176,8 +176,9 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
   for (const Contact& contact : contacts.contacts) {
     const bool is_at_rim = contact.rim.share > 0.0;
     const double recess = std::max(0.0, world_.sliding.recessOf(contact.link));
-    const double depth =
-        is_at_rim ? touch_finder_.ownDepth(contact, contact.depth_m) : contact.depth_m - recess;
+    const double of_columns = world_.sliding.columnRecess(contact.link, contact.columns);
+    const double depth = is_at_rim ? touch_finder_.ownDepth(contact, contact.depth_m)
+                                   : contact.depth_m - recess - of_columns;
     left_inside_ = std::max(left_inside_, depth);
   }
   if (touches == Touches::kMetAnew) {

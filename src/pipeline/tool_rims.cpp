@@ -10,27 +10,12 @@
 #include "tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-// Of the face at the point (m); infinite where it ends on one side only, as far as is seen.
-double widthOf(const FlatFace& face) {
-  double width = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < face.edges.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const bool are_opposite =
-          face.edges[i].outward.dot(face.edges[j].outward) < tuning::kOppositeEdges;
-      if (are_opposite) width = std::min(width, face.edges[i].depth_m + face.edges[j].depth_m);
-    }
-  }
-  return width;
-}
-
-}  // namespace
 
 void ToolRims::beginStep() {
   state_.shares.clear();
   state_.last_shares.clear();
   state_.firm.clear();
+  columns_.beginStep();
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
     if (touch.contact.rim.edges.empty()) continue;
     state_.last_shares[{touch.contact.link, touch.vertex}] = touch.contact.rim.share;
@@ -56,6 +41,7 @@ void ToolRims::look(const RobotPose& pose, const std::vector<Vec3>& vertices,
                     const ContactSet& contacts) {
   state_.at_rims.clear();
   state_.drawn.clear();
+  columns_.begin();
   std::map<int, Link> links;
   for (const Contact& contact : contacts.contacts) {
     const std::size_t number = at(contact.link);
@@ -75,6 +61,7 @@ void ToolRims::look(const RobotPose& pose, const std::vector<Vec3>& vertices,
     if (link.facing.isZero(0.0)) continue;
     findFirm(contacts, link);
     if (!findTurn(vertices, link)) continue;
+    columns_.look(link, vertices, contacts);
     lookAround(vertices, link);
     steadyShares(number);
     drawEdges(vertices, link);
@@ -103,8 +90,9 @@ void ToolRims::drawEdges(const std::vector<Vec3>& vertices, const Link& link) {
   };
   for (auto& [vertex, drawn] : drawnAtEdges(touching, neighbors_, vertices, face_under, spacing)) {
     const auto at_rim = state_.at_rims.find({link.number, vertex});
-    const double share = at_rim != state_.at_rims.end() ? at_rim->second.rim.share
-                                                        : shareAt(*face_under(vertex), link);
+    const double share = at_rim != state_.at_rims.end()
+                             ? at_rim->second.rim.share
+                             : rimShare(*face_under(vertex), link, spacing);
     drawn.aside *= fade(share, 0.0, tuning::kSomeOfIt);
     state_.drawn[{link.number, vertex}] = drawn;
   }
@@ -139,7 +127,7 @@ double ToolRims::flatness(int number, const Pose& tissue_T_link, const ContactSe
     const auto face = faceUnder(contact, link, inwards);
     if (!face) continue;
     const double wide =
-        fade(widthOf(*face), tuning::kNarrowFace * spacing, tuning::kWideFace * spacing);
+        fade(faceWidth(*face), tuning::kNarrowFace * spacing, tuning::kWideFace * spacing);
     flatness = std::max(
         flatness, wide * fade(face->normal.dot(inwards), tuning::kTiltedFace, tuning::kLevelFace));
   }
@@ -266,7 +254,7 @@ void ToolRims::put(int vertex, const Vec3& place, const std::vector<Vec3>& verti
   at_rim.shape = face->shape;
   at_rim.normal = face->normal;
   at_rim.height = face->height_m + face->normal.dot(vertices[at(vertex)] - place);
-  at_rim.rim.share = shareAt(*face, link);
+  at_rim.rim.share = rimShare(*face, link, spacing);
   const double least_depth = leastDepth(*face) / spacing;
   if (least_depth <= tuning::kNotShown) return;
   at_rim.rim.shown = fade(least_depth, tuning::kNotShown, tuning::kShown);
@@ -281,15 +269,6 @@ void ToolRims::put(int vertex, const Vec3& place, const std::vector<Vec3>& verti
   state_.at_rims[{link.number, vertex}] = at_rim;
 }
 
-// The law is of sharp edges, of a wide face that lies flat on the tissue.
-double ToolRims::shareAt(const FlatFace& face, const Link& link) const {
-  const double spacing = world_.tissue.lattice().spacing();
-  return fade(face.normal.dot(link.facing), tuning::kTiltedPush, tuning::kStraightPush) *
-         fade(face.normal.dot(link.inwards), tuning::kTiltedFace, tuning::kFlatFace) *
-         fade(face.roundness_m, spacing, 0.0) *
-         fade(widthOf(face), tuning::kNarrowFace * spacing, tuning::kWideFace * spacing);
-}
-
 // Where the tissue ends with the tool there is no rim.
 bool ToolRims::hasTissueBeyond(int vertex, const FaceEdge& edge, const Link& link) const {
   const std::vector<Vec3>& rest = world_.tissue.surface().rest;
@@ -301,9 +280,11 @@ bool ToolRims::hasTissueBeyond(int vertex, const FaceEdge& edge, const Link& lin
 
 void ToolRims::mark(Contact& contact) const {
   contact.rim = {};
+  contact.columns.clear();
   const int vertex = vertexAt(world_.tissue.surface(), contact.place);
   if (vertex < 0) {
     contact.rim.share = shareOf(contact);
+    contact.columns = columnsAt(contact);
     return;
   }
   const auto found = state_.at_rims.find({contact.link, vertex});
@@ -314,7 +295,13 @@ void ToolRims::mark(Contact& contact) const {
     contact.normal = at_rim.normal;
     contact.depth_m = -at_rim.height;
   }
+  contact.columns = columnsAt(contact);
   markDrawn(vertex, contact);
+}
+
+std::vector<RimColumn> ToolRims::columnsAt(const Contact& contact) const {
+  if (shareOf(contact) > 0.0) return {};
+  return columns_.around(contact);
 }
 
 void ToolRims::markDrawn(int vertex, Contact& contact) const {

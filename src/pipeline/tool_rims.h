@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "drawn_edges.h"
+#include "rim_columns.h"
+#include "rim_link.h"
 #include "world.h"
 
 namespace robot_tissue {
@@ -30,12 +32,14 @@ struct RimState {
   std::map<std::pair<int, int>, double> shares;       // of the load step
   std::map<std::pair<int, int>, double> last_shares;  // of the touches when it began
   std::set<std::pair<int, int>> firm;                 // stood firmly in the load step
+  RimColumnState columns;
 };
 
 class ToolRims {
  public:
   // The state is kept by the caller.
-  ToolRims(const World& world, RimState& state) : world_(world), state_(state) {}
+  ToolRims(const World& world, RimState& state)
+      : world_(world), state_(state), columns_(world, state.columns) {}
 
   // A load step begins: how much rims bear is of the shape that there is.
   void beginStep();
@@ -58,20 +62,14 @@ class ToolRims {
   double partOfDepth(const Contact& contact) const;
   // Rims bear all that it would.
   static bool isTakenOver(const Contact& contact);
+  // The columns of nodes that a contact is between, as far as they give way.
+  std::vector<RimColumn> columnsAt(const Contact& contact) const;
   // Whether tissue sticks to the tool, so that it has no rims.
   bool isSticking(int tool) const;
 
  private:
   using AtRim = RimState::AtRim;
-  // Of one link.
-  struct Link {
-    int tool = 0, number = 0;
-    Pose tissue_T_link;
-    Vec3 facing = Vec3::Zero();   // where it presses to
-    Vec3 inwards = Vec3::Zero();  // of the surface around it, as if there were no dent
-    std::set<int> firm;           // vertices that stand on the face
-    Eigen::Matrix3d turn;         // of these, from rest
-  };
+  using Link = RimLink;
 
   void takeSurface();
   Vec3 inwardsAround(const Link& link, const std::vector<Vec3>& vertices) const;
@@ -83,7 +81,6 @@ class ToolRims {
   Vec3 placeOf(int vertex, const Vec3& guess, const std::vector<Vec3>& vertices,
                const Link& link) const;
   void put(int vertex, const Vec3& place, const std::vector<Vec3>& vertices, const Link& link);
-  double shareAt(const FlatFace& face, const Link& link) const;
   void steadyShares(int link);
   void drawEdges(const std::vector<Vec3>& vertices, const Link& link);
   void markDrawn(int vertex, Contact& contact) const;
@@ -93,6 +90,7 @@ class ToolRims {
 
   const World& world_;
   RimState& state_;
+  RimColumns columns_;
   // Of the surface with that number.
   std::uint64_t revision_ = 0;
   std::vector<std::vector<int>> neighbors_;  // of vertices, along edges

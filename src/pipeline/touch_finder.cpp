@@ -281,7 +281,8 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
 
 double TouchFinder::ownDepth(const Contact& contact, double depth) const {
   const double recess = std::max(0.0, world_.sliding.recessOf(contact.link));
-  return (1.0 - rims_.partOfDepth(contact)) * depth - recess;
+  const double of_columns = world_.sliding.columnRecess(contact.link, rims_.columnsAt(contact));
+  return (1.0 - rims_.partOfDepth(contact)) * depth - recess - of_columns;
 }
 
 // What is at the rim of a flat face is pushed as the rim has it, and what is beside the face, too.

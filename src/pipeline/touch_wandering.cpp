@@ -111,6 +111,7 @@ bool TouchFinder::wanderTo(const SurfacePoint& place, const RobotPose& pose,
   curve(contact);
   if (!turn(pose, contact)) return false;
   contact.turn = curved_.hollowAt(place);
+  contact.columns = rims_.columnsAt(contact);
   return true;
 }
 

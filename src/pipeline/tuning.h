@@ -193,6 +193,18 @@ constexpr double kShown = -1.05;
 // Share (1): the most that it changes by in a load step. More: forces jump where rims come and go.
 // Chosen.
 constexpr double kMostOfShare = 0.1;
+// Rims on meshes. Spacings inside a face's edge: up to here, a touch tells where the columns of
+// nodes around it are. Chosen: a column that gives way is 0.3 inside at most, and a touch is no
+// farther from it than the diagonal of a cell.
+constexpr double kTellsColumn = 1.5;
+// Spacings: what is beyond an edge by more is beside the face. Rounding of edges.
+constexpr double kBesideFace = -0.1;
+// Bilinear weight (1) that is none. Rounding.
+constexpr double kNoWeight = 1e-6;
+// Of the shear modulus times the spacing (1): columns are no softer, a thousandth of one right at
+// the edge. More: a column that an edge has left holds the tissue; less: points between columns
+// that are all but free go far into the tool before they are pushed. Chosen.
+constexpr double kSoftestColumn = 0.01;
 // Cosine of two edges of a face that are on opposite sides. Chosen.
 constexpr double kOppositeEdges = -0.7;
 // Of their spread along it (1): points that spread less across a line are on it. Rounding.

@@ -3,9 +3,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "../rim_strip.h"
 #include "loads/rim_law.h"
+#include "mesh_fixtures.h"
+#include "robot_tissue/core/tissue.h"
 
 namespace robot_tissue::test_rim_law {
 namespace {
@@ -43,6 +46,32 @@ TEST(RimLaw, BetweenFreeAndRigidTheStiffnessRisesWithoutAJump) {
       EXPECT_LT((stiffness - last) * (end - depth), 3e-4 * (stiffness + 1.0));
       last = stiffness;
     }
+  }
+}
+
+TEST(RimLaw, ComplianceIsInShearModuliTimesSpacing) {
+  const RimCompliance found = rimCompliance({20.0, 0.45}, -0.3);
+  const RimLaw law = rimLaw(0.45);
+  EXPECT_DOUBLE_EQ(found.across, 1.0 / (20.0 * rimStiffness(law.across, -0.3)));
+  EXPECT_DOUBLE_EQ(found.along, 1.0 / (20.0 * rimStiffness(law.along, -0.3)));
+  EXPECT_DOUBLE_EQ(found.normal, 1.0 / (20.0 * rimStiffness(law.normal, -0.3)));
+}
+
+// However full the cells around a node are, they are of one material.
+TEST(RimLaw, ModuliAreOfTheMaterial) {
+  TissueConfig config;
+  config.mesh =
+      std::make_shared<const TriangleMesh>(boxMesh(Vec3::Zero(), Vec3(0.023, 0.023, 0.018)));
+  config.spacing = 0.005;
+  config.material.young_modulus = 1e4;
+  config.material.poisson_ratio = 0.4;
+  const Tissue tissue(config, SolverConfig());
+  const double shear = 1e4 / (2.0 * 1.4);
+  for (int node = 0; node < tissue.lattice().nodeCount(); ++node) {
+    const auto moduli = tissue.rimModuli(node);
+    ASSERT_TRUE(moduli) << node;
+    EXPECT_NEAR(moduli->stiffness, shear * 0.005, 1e-9 * shear) << node;
+    EXPECT_NEAR(moduli->poisson_ratio, 0.4, 1e-9) << node;
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "robot_tissue/core/types.h"
@@ -26,6 +27,20 @@ struct Rim {
   Eigen::Matrix3d drawn_aside = Eigen::Matrix3d::Zero();
 };
 
+// A column of nodes, one behind the other: the lattice's axis that it runs along, and the grid's
+// indices along the next two axes.
+using NodeColumn = std::array<int, 3>;
+
+// Where nodes are not on the surface, columns of them stand at a face's edges as vertices do. How
+// much one gives way (m/N), and its part in what a point between columns does.
+struct RimColumn {
+  NodeColumn line{};
+  double weight = 0.0;  // bilinear, of the point at rest; all of a point's: 1 in sum
+  double share = 0.0;   // as Rim::share
+  double normal = 0.0;
+  Eigen::Matrix3d friction = Eigen::Matrix3d::Zero();  // in the face, by the way along it
+};
+
 // A point of the surface that is inside a tool, or near it: the one form of what was found. What
 // is kept of it from solve to solve has it as a part (SlidingContacts::ContactConstraint).
 struct Contact {
@@ -37,8 +52,9 @@ struct Contact {
   Vec3 normal = Vec3::Zero();  // unit, from the tool into the tissue: the way out of the tool
   double depth_m = 0.0;        // penetration depth along the normal; < 0: a gap
   Rim rim;
-  Vec3 bulge = Vec3::Zero();  // how far the point is off its triangle (m, CurvedSurface)
-  bool wanders = false;       // at a sharp edge or corner of the link, which tissue slides past
+  std::vector<RimColumn> columns;  // those that give way; none where rim has edges or a share
+  Vec3 bulge = Vec3::Zero();       // how far the point is off its triangle (m, CurvedSurface)
+  bool wanders = false;  // at a sharp edge or corner of the link, which tissue slides past
   // How fast the hollow that wanders past turns its normal back with the way (1/m): symmetric, of
   // no negative direction.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();

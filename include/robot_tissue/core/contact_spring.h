@@ -57,6 +57,8 @@ struct ContactSpring {
   Vec3 drawn_at = Vec3::Zero();
   // Both likewise by so much, as long as it pushes (m): the plane is so deep in the tool.
   double recess = 0.0;
+  // Likewise its carriers, each by a way of its own along the normal (m); none: by none.
+  std::vector<double> carrier_ways;
   bool is_thread = false;    // has carriers, rest, stiffness and, besides:
   double rest_length = 0.0;  // L (m)
 };

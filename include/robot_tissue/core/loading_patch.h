@@ -23,12 +23,21 @@ struct RimSpring {
                                   // hard (m)
 };
 
+// What the law of rims takes of the tissue (doc/model.md, "The rim").
+struct RimModuli {
+  double stiffness = 0.0;  // shear modulus times spacing (N/m)
+  double poisson_ratio = 0.0;
+};
+
 // Of the spring between a bonded flat plate and a node at its edge (m/N); infinite: free.
 struct RimCompliance {
   double across = 0.0;  // in the surface, across the edge
   double along = 0.0;
   double normal = 0.0;
 };
+
+// Of a node `depth` spacings inside the plate's edge, < 0: beyond it.
+RimCompliance rimCompliance(const RimModuli& moduli, double depth);
 
 // Where a patch stands that a force moves: its center moved, then it turned about that.
 struct PatchPlace {

@@ -154,6 +154,9 @@ class Tissue {
   // rate of strain and the node's mass count, too. 1: there is none, or the method goes through it.
   double stiffening(int node) const;
   Vec3 nodePosition(int node) const;  // deformed (m, tissue frame)
+  // Of the material around the node, filled in part or not; none where method or model have no
+  // rims.
+  std::optional<RimModuli> rimModuli(int node) const;
   // Of a node `depth` spacings inside a plate's edge, < 0: beyond it (doc/model.md, "The rim").
   // None where cells at the node are filled in part, and where method or model have no rims.
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;

@@ -27,8 +27,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "robot_tissue/core/contact_set.h"
@@ -75,6 +77,8 @@ class SlidingContacts {
     double stiffening = 1.0;              // of the tissue, in the time step under way
     double entry = 0.0;                   // m: in time, how deep it may be yet, as it was found so
     double recess = 0.0;                  // m: of its link
+    TouchCompliance of_columns;           // at a rim, of the columns that the point is between
+    double column_recess = 0.0;           // m: by what these give way
     double stuck = 1.0;        // share of its link's way in the load step on which it touches (1)
     bool found = false;        // in the last update
     std::optional<Vec3> left;  // where in its triangle it went from in this load step, by weights
@@ -147,6 +151,8 @@ class SlidingContacts {
   const std::vector<ContactConstraint>& touches() const { return touches_; }
   // How deep a point that touches the link is in it, where the contact is narrow (m): Recess.
   double recessOf(int link) const;
+  // Likewise as these columns give way (m).
+  double columnRecess(int link, const std::vector<RimColumn>& columns) const;
   // Whether the tool pushes, did at the last commit, or would in a solve.
   bool pushes(int tool, const Tissue& tissue) const;
   // Where the link pressed to at the last commit, friction included (unit, tissue frame); zero when
@@ -213,6 +219,8 @@ class SlidingContacts {
   const BoxOrCylinder* bodyUnder(const Touches& touches, const Tissue& tissue) const;
   void forgetLost(const Held& held);
   void forgetRecesses();
+  void softenColumns(const Tissue& tissue);
+  void showColumns(const Tissue& tissue, ContactConstraint& touch) const;
   void goOnAsSolved(const TissueSurface& surface);
   void noteFacing(const RobotPose& pose);
   Pose movedSince(std::size_t link, const RobotPose& pose) const;
@@ -223,7 +231,8 @@ class SlidingContacts {
   std::vector<LinkForm> forms_;
   std::vector<Pressed> pressed_;      // per tool
   std::vector<double> plane_shares_;  // per link: of the ways of its planes, that they go (1)
-  std::vector<LinkRecess> recesses_;  // per link
+  std::map<std::pair<int, NodeColumn>, double> column_ways_;  // of links: as they give way (m)
+  std::vector<LinkRecess> recesses_;                          // per link
   PressGrowth growth_;
   SurfaceCrowding crowding_;
   bool is_settled_ = false;                   // since the last update

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "loads/ratio_table.h"
+#include "robot_tissue/core/loading_patch.h"
 
 namespace robot_tissue {
 namespace {
@@ -57,6 +58,14 @@ double rimStiffness(const RimMode& mode, double depth) {
   if (depth <= mode.shift - 1.0) return 0.0;
   return mode.stiffness * (depth + 1.0 - mode.shift) / (1.0 - mode.shift) * mode.shift /
          (mode.shift - depth);
+}
+
+RimCompliance rimCompliance(const RimModuli& moduli, double depth) {
+  const RimLaw law = rimLaw(moduli.poisson_ratio);
+  const auto compliance = [&](const RimMode& mode) {
+    return 1.0 / (moduli.stiffness * rimStiffness(mode, depth));
+  };
+  return {compliance(law.across), compliance(law.along), compliance(law.normal)};
 }
 
 }  // namespace robot_tissue

@@ -98,8 +98,11 @@ std::vector<std::pair<int, Vec3>> Body::shownAsTheirOwn(const std::vector<Loadin
     }
     for (const ContactSpring& spring : patch.contacts) {
       const Vec3 off = of_tools(spring, state_.displacement);
-      if (off.isZero(0.0)) continue;
-      for (const NodeWeight& carrier : spring.carriers) offs.emplace_back(carrier.node, off);
+      if (off.isZero(0.0) && spring.carrier_ways.empty()) continue;
+      for (std::size_t i = 0; i < spring.carriers.size(); ++i) {
+        const double way = spring.carrier_ways.empty() ? 0.0 : spring.carrier_ways[i];
+        offs.emplace_back(spring.carriers[i].node, off + way * spring.normal);
+      }
     }
   }
   std::stable_sort(offs.begin(), offs.end(), [](const auto& one, const auto& other) {

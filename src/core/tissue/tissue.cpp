@@ -54,6 +54,9 @@ Vec3 Tissue::forceOfFixedNodes() const { return parts_->forces.forceOfFixedNodes
 double Tissue::nodeStiffness(int node) const { return parts_->data.body.nodeStiffness(node); }
 double Tissue::stiffening(int node) const { return parts_->forces.stiffening(node); }
 Vec3 Tissue::nodePosition(int node) const { return parts_->data.body.nodePosition(node); }
+std::optional<RimModuli> Tissue::rimModuli(int node) const {
+  return parts_->forces.rimModuli(node);
+}
 std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const {
   return parts_->forces.rimCompliance(node, depth);
 }

@@ -1,7 +1,6 @@
 #include "tissue/tissue_forces.h"
 
 #include "loads/narrow_contact.h"
-#include "loads/rim_law.h"
 #include "material/elastic_model.h"
 #include "material/tissue_model.h"
 
@@ -68,6 +67,20 @@ double TissueForces::stiffening(int node) const {
   return integrator.stiffness().elastic_scale + integrator.inertia(node) / stiffness;
 }
 
+std::optional<RimModuli> TissueForces::rimModuli(int node) const {
+  if (!data_.methods.now().findsEquilibrium()) return std::nullopt;
+  const CellSet& cells = data_.body.cells();
+  double eighths = 0.0;
+  for (const CellSet::Meeting& met : cells.meetings(node)) {
+    eighths += cells.all()[at(met.cell)].eighthsAt(static_cast<int>(met.corner));
+  }
+  const Moduli moduli = data_.body.model().moduliAt(data_.body.state(), node);
+  if (moduli.shear <= 0.0 || eighths <= 0.0) return std::nullopt;
+  const double of_four_cells = moduli.shear * data_.body.lattice().spacing();
+  return RimModuli{of_four_cells * 4.0 / eighths, poissonRatio(moduli)};
+}
+
+// On the surface of full cells; where materials meet, as the node has cells of each.
 std::optional<RimCompliance> TissueForces::rimCompliance(int node, double depth) const {
   if (!data_.methods.now().findsEquilibrium()) return std::nullopt;
   const CellSet& cells = data_.body.cells();
@@ -77,12 +90,8 @@ std::optional<RimCompliance> TissueForces::rimCompliance(int node, double depth)
   }
   const Moduli moduli = data_.body.model().moduliAt(data_.body.state(), node);
   if (moduli.shear <= 0.0) return std::nullopt;
-  const RimLaw law = rimLaw(poissonRatio(moduli));
   const double unit = moduli.shear * data_.body.lattice().spacing();
-  const auto compliance = [&](const RimMode& mode) {
-    return 1.0 / (unit * rimStiffness(mode, depth));
-  };
-  return RimCompliance{compliance(law.across), compliance(law.along), compliance(law.normal)};
+  return robot_tissue::rimCompliance({unit, poissonRatio(moduli)}, depth);
 }
 
 std::optional<Recess> TissueForces::recessUnder(const NarrowPress& press) const {

@@ -18,6 +18,7 @@ class TissueForces {
   Vec3 weight() const;
   Vec3 forceOfFixedNodes() const;
   double stiffening(int node) const;
+  std::optional<RimModuli> rimModuli(int node) const;
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;
   std::optional<Recess> recessUnder(const NarrowPress& press) const;
 
