@@ -7,7 +7,7 @@ robot_tissue_room(base
 robot_tissue_room(simd
   USES base
   FILES field_kernel.cpp field_kernel.h lanes.h numbers.h sum_of_terms.h
-    symmetric_kernel.cpp symmetric_kernel.h vector_clones.h workers.cpp workers.h)
+    symmetric_kernel.cpp symmetric_kernel.h vector_clones.h vectors.h workers.cpp workers.h)
 robot_tissue_room(geometry
   USES base
   PUBLIC cell_fill.h grid.h mesh_checks.h mesh_walls.h triangle_mesh.h triangle_point.h
@@ -38,10 +38,10 @@ robot_tissue_room(surface
     mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h smooth_carriers.cpp
     smooth_carriers.h surface.cpp surface_strain.cpp undented.cpp undented.h)
 robot_tissue_room(membrane
-  USES base geometry config surface
+  USES base simd geometry config surface
   FILES bending_parts.cpp bending_parts.h hinge.cpp hinge.h membrane.cpp membrane.h
     membrane_plan.cpp membrane_plan.h node_blocks.cpp node_blocks.h pressed_triangle.cpp
-    pressed_triangle.h sheet_law.cpp sheet_law.h stretched_triangle.cpp stretched_triangle.h
+    pressed_triangle.h row_kernel.cpp row_kernel.h sheet_kernel.cpp sheet_kernel.h sheet_law.cpp sheet_law.h stretched_triangle.cpp stretched_triangle.h
     vertex_carriers.cpp vertex_carriers.h)
 robot_tissue_room(material
   USES base config lattice membrane
@@ -75,7 +75,7 @@ robot_tissue_room(solvers/multigrid/level
     conjugate_gradients.h constrained_balance.cpp constrained_nodes.cpp constrained_nodes.h grid_level.cpp grid_level.h lattice_coarsening.cpp lattice_coarsening.h
     group_inverse.cpp group_inverse.h level_cell.cpp level_cell.h
     level_membrane.cpp level_membrane.h
-    skyline_cholesky.cpp skyline_cholesky.h tuning.h vectors.h woodbury_update.cpp
+    skyline_cholesky.cpp skyline_cholesky.h tuning.h woodbury_update.cpp
     woodbury_update.h)
 robot_tissue_room(solvers/multigrid/hierarchy
   USES base simd lattice material loads solvers/multigrid/level

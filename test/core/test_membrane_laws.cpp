@@ -9,6 +9,7 @@
 #include "membrane/hinge.h"
 #include "membrane/membrane.h"
 #include "membrane/pressed_triangle.h"
+#include "membrane/sheet_kernel.h"
 #include "membrane/stretched_triangle.h"
 #include "mesh_fixtures.h"
 
@@ -81,6 +82,41 @@ TEST(MembraneLaw, DerivativesOfHinges) {
 TEST(MembraneLaw, DerivativesOfPressure) {
   Random random;
   expectDerivatives(PressedTriangle(7.0, Vec3(0.5, 0.1, 0.2)), shaken(kTriangle, 0.2, random));
+}
+
+// Stretched, folded to either side and turned over, from where they have no forces on: more than
+// a vector holds, and some that are left.
+TEST(MembraneLaw, ManyAtATimeAreAsEachAlone) {
+  for (const double ratio : {0.0, 0.3, 0.5}) {
+    const SheetLaw law = sheetLaw(sheet(ratio));
+    SheetKernel kernel;
+    Random random;
+    std::vector<Vec3> places, expected;
+    const auto take = [&](const auto& element, const auto& corners) {
+      const auto gradient = element.gradient(corners);
+      places.insert(places.end(), corners.begin(), corners.end());
+      for (const Vec3& slope : gradient) expected.push_back(-slope);
+    };
+    for (int i = 0; i < 29; ++i) {
+      const int first = static_cast<int>(places.size());
+      const double shake = 0.04 * i;
+      const StretchedTriangle triangle(law, kTriangle);
+      kernel.add(triangle, {first, first + 1, first + 2});
+      take(triangle, shaken(kTriangle, shake, random));
+      const Hinge hinge(law.bending, kHinge);
+      kernel.add(hinge, {first + 3, first + 4, first + 5, first + 6});
+      take(hinge, shaken(kHinge, shake, random));
+    }
+    std::vector<Vec3> forces(places.size(), Vec3::Zero());
+    kernel.addForces(places, forces);
+    double greatest = 0.0;
+    for (const Vec3& force : expected) greatest = std::max(greatest, force.norm());
+    ASSERT_GT(greatest, 0.0);
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      EXPECT_LT((forces[i] - expected[i]).norm(), 1e-13 * greatest + 1e-12 * expected[i].norm())
+          << i;
+    }
+  }
 }
 
 // The angle is signed: a ridge seen from outside is positive.
@@ -351,7 +387,7 @@ TEST(Membrane, HangsOnTheNodesThatCarryIt) {
 
 double weightOf(Random& random) { return random.offset(1.0).x(); }
 
-// Of a ring, in which each has something in common with the next.
+// Of a ring, in which each has something in common with the next; symmetric.
 NodeBlocks randomBlocks(int rows, Random& random) {
   std::vector<std::pair<int, int>> pairs;
   for (int row = 0; row < rows; ++row) {
@@ -359,8 +395,13 @@ NodeBlocks randomBlocks(int rows, Random& random) {
     pairs.emplace_back((row + 1) % rows, row);
   }
   NodeBlocks blocks(rows, std::move(pairs));
-  for (int i = 0; i < blocks.last(rows - 1); ++i) {
-    for (double& number : blocks.block(i).reshaped()) number = weightOf(random);
+  for (int row = 0; row < rows; ++row) {
+    for (int i = blocks.first(row); i < blocks.last(row); ++i) {
+      Eigen::Matrix3d part;
+      for (double& number : part.reshaped()) number = weightOf(random);
+      blocks.block(i) += part;
+      blocks.block(blocks.place(blocks.column(i), row)) += part.transpose();
+    }
   }
   return blocks;
 }

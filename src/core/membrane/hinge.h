@@ -27,6 +27,8 @@ class Hinge {
 
   static double angle(const Corners& places);  // rad, > 0 where the sheet is seen as a ridge
 
+  double stiffness() const { return stiffness_; }  // of the angle (N m)
+  double restAngle() const { return rest_angle_; }
   double energy(const Corners& places) const;     // J
   Corners gradient(const Corners& places) const;  // of the energy (N)
   // kConvex leaves out what the angle's own second derivative adds.

@@ -53,11 +53,12 @@ std::vector<int> sheetOf(const TissueSurface& surface, const MembranePart& part)
 
 Membrane::Membrane(const TissueSurface& surface, const std::vector<MembranePart>& parts) {
   take(surface, parts);
+  bindKernel();
   bindNodes(surface);
   makePattern();
   const std::vector<Vec3> rest = placesOf(std::vector<Vec3>(nodes_.size(), Vec3::Zero()));
   rounding_.assign(rest_.size(), Vec3::Zero());
-  addForces(rest, false, rounding_);
+  sheet_.addForces(rest, rounding_);
   NodeBlocks stiffness = pattern_;
   findStiffness(std::vector<Vec3>(nodes_.size(), Vec3::Zero()), Curvature::kConvex, stiffness);
   for (const Eigen::Matrix3d& own : carriers_.diagonal(stiffness)) {
@@ -87,6 +88,20 @@ void Membrane::take(const TissueSurface& surface, const std::vector<MembranePart
         vertex_of_surface_.push_back(vertex);
       }
       vertex = number[at(vertex)];
+    }
+  }
+}
+
+void Membrane::bindKernel() {
+  for (std::size_t number = 0; number < elements_.size(); ++number) {
+    const Element& element = elements_[number];
+    const auto& [a, b, c, d] = element.vertices;
+    if (const auto* triangle = std::get_if<StretchedTriangle>(&element.law)) {
+      sheet_.add(*triangle, {a, b, c});
+    } else if (const auto* hinge = std::get_if<Hinge>(&element.law)) {
+      sheet_.add(*hinge, {a, b, c, d});
+    } else {
+      pressed_.push_back(static_cast<int>(number));
     }
   }
 }
@@ -151,6 +166,13 @@ void Membrane::makePattern() {
     }
   }
   pattern_ = NodeBlocks(static_cast<int>(rest_.size()), std::move(pairs));
+  for (const Element& element : elements_) {
+    for (const int row : element.vertices) {
+      for (const int column : element.vertices) {
+        if (row >= 0 && column >= 0) places_.push_back(pattern_.place(row, column));
+      }
+    }
+  }
 }
 
 std::vector<Vec3> Membrane::ofNodes(const std::vector<Vec3>& displacement) const {
@@ -177,19 +199,14 @@ double Membrane::energy(const std::vector<Vec3>& moved) const {
   return energy;
 }
 
-// Of pressures, or of all else.
-void Membrane::addForces(const std::vector<Vec3>& places, bool of_pressure,
-                         std::vector<Vec3>& on_vertices) const {
-  for (const Element& element : elements_) {
-    if (std::holds_alternative<PressedTriangle>(element.law) != of_pressure) continue;
-    std::visit(
-        [&](const auto& law) {
-          const auto gradient = law.gradient(cornersOf(law, element.vertices, places));
-          for (std::size_t i = 0; i < gradient.size(); ++i) {
-            on_vertices[at(element.vertices[i])] -= gradient[i];
-          }
-        },
-        element.law);
+void Membrane::addPressure(const std::vector<Vec3>& places, std::vector<Vec3>& on_vertices) const {
+  for (const int number : pressed_) {
+    const Element& element = elements_[at(number)];
+    const auto& law = std::get<PressedTriangle>(element.law);
+    const auto gradient = law.gradient(cornersOf(law, element.vertices, places));
+    for (std::size_t i = 0; i < gradient.size(); ++i) {
+      on_vertices[at(element.vertices[i])] -= gradient[i];
+    }
   }
 }
 
@@ -197,9 +214,9 @@ void Membrane::addForces(const std::vector<Vec3>& places, bool of_pressure,
 std::vector<Vec3> Membrane::forces(const std::vector<Vec3>& moved) const {
   const std::vector<Vec3> places = placesOf(moved);
   std::vector<Vec3> on_vertices(rest_.size(), Vec3::Zero());
-  addForces(places, false, on_vertices);
+  sheet_.addForces(places, on_vertices);
   for (std::size_t i = 0; i < rounding_.size(); ++i) on_vertices[i] -= rounding_[i];
-  addForces(places, true, on_vertices);
+  addPressure(places, on_vertices);
   return carriers_.toCarriers(on_vertices);
 }
 
@@ -232,7 +249,7 @@ Vec3 Membrane::force(const std::vector<Vec3>& displacement, int node) const {
 
 double Membrane::pressureNorm(const std::vector<Vec3>& moved) const {
   std::vector<Vec3> on_vertices(rest_.size(), Vec3::Zero());
-  addForces(placesOf(moved), true, on_vertices);
+  addPressure(placesOf(moved), on_vertices);
   double squared = 0.0;
   for (const Vec3& force : carriers_.toCarriers(on_vertices)) squared += force.squaredNorm();
   return std::sqrt(squared);
@@ -242,6 +259,7 @@ void Membrane::findStiffness(const std::vector<Vec3>& moved, Curvature curvature
                              NodeBlocks& of_vertices) const {
   const std::vector<Vec3> places = placesOf(moved);
   of_vertices.clear();
+  auto place = places_.begin();
   for (const Element& element : elements_) {
     std::visit(
         [&](const auto& law) {
@@ -249,8 +267,7 @@ void Membrane::findStiffness(const std::vector<Vec3>& moved, Curvature curvature
           const int count = static_cast<int>(countOf(law));
           for (int i = 0; i < count; ++i) {
             for (int j = 0; j < count; ++j) {
-              const int place = of_vertices.place(element.vertices[at(i)], element.vertices[at(j)]);
-              of_vertices.block(place) += hessian.template block<3, 3>(3 * i, 3 * j);
+              of_vertices.block(*place++) += hessian.template block<3, 3>(3 * i, 3 * j);
             }
           }
         },

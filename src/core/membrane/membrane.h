@@ -11,6 +11,7 @@
 #include "membrane/hinge.h"
 #include "membrane/node_blocks.h"
 #include "membrane/pressed_triangle.h"
+#include "membrane/sheet_kernel.h"
 #include "membrane/sheet_law.h"
 #include "membrane/stretched_triangle.h"
 #include "membrane/vertex_carriers.h"
@@ -60,17 +61,20 @@ class Membrane {
   void addHinges(const TissueSurface& surface, const MembranePart& part);
   void bindNodes(const TissueSurface& surface);
   void makePattern();
-  void addForces(const std::vector<Vec3>& places, bool of_pressure,
-                 std::vector<Vec3>& on_vertices) const;
+  void bindKernel();
+  void addPressure(const std::vector<Vec3>& places, std::vector<Vec3>& on_vertices) const;
   std::vector<Vec3> placesOf(const std::vector<Vec3>& moved) const;  // of vertices (m)
 
   std::vector<Element> elements_;
+  SheetKernel sheet_;                   // of those that have no pressure
+  std::vector<int> pressed_;            // of the elements
   std::vector<Vec3> rest_;              // of vertices (m)
   std::vector<int> vertex_of_surface_;  // per vertex here: that of the surface
   std::vector<int> nodes_;
   std::vector<std::vector<int>> elements_at_;  // per node
   VertexCarriers carriers_;
   NodeBlocks pattern_;
+  std::vector<int> places_;  // in it: of each element's pairs of vertices
   std::vector<double> rest_stiffness_;
   std::vector<Vec3> rounding_;  // of forces at rest, on vertices, pressure left out (N)
 };

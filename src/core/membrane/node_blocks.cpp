@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "membrane/row_kernel.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -30,12 +32,13 @@ void NodeBlocks::addRow(const std::vector<int>& columns,
                         const std::vector<Eigen::Matrix3d>& blocks) {
   for (const int column : columns) {
     column_.push_back(column);
-    blocks_.push_back(blocks[at(column)]);
+    blocks_.back() = blocks[at(column)];
+    blocks_.emplace_back(Eigen::Matrix3d::Zero());
   }
   first_.push_back(static_cast<int>(column_.size()));
 }
 
-void NodeBlocks::clear() { blocks_.assign(column_.size(), Eigen::Matrix3d::Zero()); }
+void NodeBlocks::clear() { blocks_.assign(column_.size() + 1, Eigen::Matrix3d::Zero()); }
 
 void NodeBlocks::operator*=(double factor) {
   for (Eigen::Matrix3d& block : blocks_) block *= factor;
@@ -47,12 +50,9 @@ int NodeBlocks::place(int row, int column) const {
 }
 
 std::vector<Vec3> NodeBlocks::times(const std::vector<Vec3>& vectors) const {
-  std::vector<Vec3> product(vectors.size(), Vec3::Zero());
-  for (int row = 0; row < rows(); ++row) {
-    for (int i = first(row); i < last(row); ++i) {
-      product[at(row)] += block(i) * vectors[at(column(i))];
-    }
-  }
+  std::vector<Vec3> product(at(rows()));
+  sumBlocks(first_.data(), column_.data(), blocks_.front().data(), rows(), padded(vectors).data(),
+            product.data());
   return product;
 }
 

@@ -35,7 +35,8 @@ class NodeBlocks {
  private:
   std::vector<int> first_ = {0};
   std::vector<int> column_;
-  std::vector<Eigen::Matrix3d> blocks_;
+  // And one more: vector instructions read beyond the last one.
+  std::vector<Eigen::Matrix3d> blocks_ = {Eigen::Matrix3d::Zero()};
 };
 
 // The greatest eigenvalue of D^-1 K, K the matrix and D its blocks on the diagonal, from below, by

@@ -27,7 +27,10 @@ class StretchedTriangle {
 
   StretchedTriangle(const SheetLaw& law, const Corners& rest);
 
-  double area() const { return area_; }           // at rest (m^2)
+  double area() const { return area_; }  // at rest (m^2)
+  double shear() const { return shear_; }
+  double exponent() const { return exponent_; }
+  const Eigen::Matrix<double, 2, 3>& slopes() const { return slopes_; }
   double energy(const Corners& places) const;     // J
   Corners gradient(const Corners& places) const;  // of the energy (N)
   // S = 2 mu t dW/dC, of the second Piola-Kirchhoff stress times t, is taken without its negative

@@ -27,7 +27,6 @@ class VertexCarriers {
   const Share* end(int vertex) const { return shares_.data() + first_[at(vertex) + 1]; }
 
   double weight(int vertex, int carrier) const;
-  Vec3 mean(int vertex, const std::vector<Vec3>& of_carriers) const;
   std::vector<Vec3> toVertices(const std::vector<Vec3>& of_carriers) const;  // W u
   std::vector<Vec3> toCarriers(const std::vector<Vec3>& on_vertices) const;  // W^T f
   // W^T K W, and its blocks on the diagonal.
@@ -36,10 +35,14 @@ class VertexCarriers {
 
  private:
   void add(Shares shares);
+  void transpose();
 
   int carriers_ = 0;
   std::vector<int> first_ = {0};
   std::vector<Share> shares_;  // of a vertex by the node's number
+  // By carriers: the vertices that they carry, ascending, with the same weights.
+  std::vector<int> first_carried_;
+  std::vector<Share> carried_;
 };
 
 }  // namespace robot_tissue

@@ -5,8 +5,8 @@
 #include "material/elastic_cell.h"
 #include "material/elastic_law.h"
 #include "simd/vector_clones.h"
+#include "simd/vectors.h"
 #include "solvers/multigrid/level/tuning.h"
-#include "solvers/multigrid/level/vectors.h"
 
 namespace robot_tissue::vectors {
 

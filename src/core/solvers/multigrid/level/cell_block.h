@@ -4,8 +4,8 @@
 #include "material/elastic_cell.h"
 #include "material/elastic_law.h"
 #include "simd/vector_clones.h"
+#include "simd/vectors.h"
 #include "solvers/multigrid/level/cell_barrier.h"
-#include "solvers/multigrid/level/vectors.h"
 
 namespace robot_tissue::vectors {
 

@@ -1,5 +1,6 @@
-// Vectors as long as the processor's, and what cell_kernel.cpp does with them. The compiler would
-// split longer ones, but compares and blends these number by number: that took half of the time.
+// Vectors as long as the processor's, and what kernels of cells and membranes do with them. The
+// compiler would split longer ones, but compares and blends these number by number: that took half
+// of the time.
 #pragma once
 
 #include <cstddef>
@@ -120,8 +121,9 @@ ROBOT_TISSUE_INLINE typename V::Lanes inverseCubeRoot(const typename V::Lanes& x
   return root;
 }
 
-// exp(x), 0 <= x <= 80: with n the whole number next to x / ln 2 and r = x - n ln 2, 2^n times
-// Taylor's polynomial in r. Adding 1.5 * 2^digits rounds to n and leaves it in the lowest bits.
+// exp(x), |x| <= 80 (700 in double precision): with n the whole number next to x / ln 2 and r = x -
+// n ln 2, 2^n times Taylor's polynomial in r. Adding 1.5 * 2^digits rounds to n and leaves it in
+// the lowest bits.
 template <typename V>
 ROBOT_TISSUE_INLINE typename V::Lanes exponential(const typename V::Lanes& x) {
   using Real = typename V::Real;
@@ -138,6 +140,57 @@ ROBOT_TISSUE_INLINE typename V::Lanes exponential(const typename V::Lanes& x) {
   const Bits power =
       (__builtin_bit_cast(Bits, rounded) << V::kDigits) + __builtin_bit_cast(Bits, all<V>(Real(1)));
   return sum * __builtin_bit_cast(typename V::Lanes, power);
+}
+
+// ln(x), x > 0; double precision. With x = 2^n m, 1 / sqrt(2) <= m < sqrt(2), and f = (m - 1) / (m
+// + 1): n ln 2 + 2 (f + f^3 / 3 + f^5 / 5 + ...).
+template <typename V>
+ROBOT_TISSUE_INLINE typename V::Lanes logarithm(const typename V::Lanes& x) {
+  using L = typename V::Lanes;
+  using Bits = typename V::Bits;
+  constexpr std::int64_t kRootOfHalf = 0x3fe6a09e667f3bcd;
+  constexpr int kTerms = 12;
+  // From bits, which shift by whole powers: a number near 2^n has those of n above kRootOfHalf's.
+  const Bits above = __builtin_bit_cast(Bits, x) - kRootOfHalf;
+  const Bits power = above >> V::kDigits;
+  const L m = __builtin_bit_cast(L, __builtin_bit_cast(Bits, x) - (power << V::kDigits));
+  const L n = __builtin_convertvector(power, L);
+  const L f = (m - 1.0) / (m + 1.0), square = f * f;
+  L sum = all<V>(1.0 / (2.0 * kTerms + 1.0));
+#pragma GCC unroll 12
+  for (int term = kTerms - 1; term >= 0; --term) sum = 1.0 / (2.0 * term + 1.0) + square * sum;
+  return n * V::kLn2High + (n * V::kLn2Low + 2.0 * f * sum);
+}
+
+// The angle of (x, y) from the axis x, -pi to pi; double precision. Of the quotient q <= 1 of both
+// sizes atan q = pi / 4 + atan((q - 1) / (q + 1)); near 0 by a quotient of polynomials (Moshier
+// 1989, Cephes).
+template <typename V>
+ROBOT_TISSUE_INLINE typename V::Lanes angleOf(const typename V::Lanes& y,
+                                              const typename V::Lanes& x) {
+  using L = typename V::Lanes;
+  constexpr double kHalfPi = 1.57079632679489661923;
+  const L high = x < 0.0 ? -x : x, wide = y < 0.0 ? -y : y;
+  const L q = lesser(high, wide) / greater(high, wide);
+  const L r = q > 0.66 ? (q - 1.0) / (q + 1.0) : q;
+  const L z = r * r;
+  const L above = (((-8.750608600031904122785e-1 * z - 1.615753718733365076637e1) * z -
+                    7.500855792314704667340e1) *
+                       z -
+                   1.228866684490136173410e2) *
+                      z -
+                  6.485021904942025371773e1;
+  const L below = ((((z + 2.485846490142306297962e1) * z + 1.650270098316988542046e2) * z +
+                    4.328810604912902668951e2) *
+                       z +
+                   4.853903996359136964868e2) *
+                      z +
+                  1.945506571482613964425e2;
+  const L near = r + r * z * above / below;
+  const L eighth = q > 0.66 ? 0.5 * kHalfPi + near : near;
+  const L quarter = wide > high ? kHalfPi - eighth : eighth;
+  const L half = x < 0.0 ? 2.0 * kHalfPi - quarter : quarter;
+  return y < 0.0 ? -half : half;
 }
 
 }  // namespace robot_tissue::vectors
