@@ -73,6 +73,7 @@ class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
                                 point,
                                 normal(),
                                 depthOf(point),
+                                {},
                                 {}});
       }
     }
@@ -166,7 +167,7 @@ class TwoBumpsOnABlock : public PlaneOnABlock {
     const SurfacePoint place{top, weights};
     const Corners corners = cornersOf(surface.triangles[at(top)], tissue_->vertices());
     const Vec3 point = pointOf(corners, weights);
-    return {0, 0, 0, place, point, normal(), depthOf(point), {}};
+    return {0, 0, 0, place, point, normal(), depthOf(point), {}, {}};
   }
   Vec3 middleAtRest(const MeshTriangle& triangle) const {
     return pointOf(cornersOf(triangle, tissue_->surface().rest), Vec3::Constant(1.0 / 3.0));

@@ -41,7 +41,7 @@ class TouchedBlock : public ::testing::Test {
       }
       if (point.z() < kTop - 1e-9) continue;
       set.contacts.push_back(
-          {0, 0, 0, {static_cast<int>(i), barycentric}, point, -Vec3::UnitZ(), kDepth, {}});
+          {0, 0, 0, {static_cast<int>(i), barycentric}, point, -Vec3::UnitZ(), kDepth, {}, {}});
     }
     contacts_.ride(pose_, tissue_);
     const std::vector<std::uint8_t> held(tissue_.state().displacement.size(), 0);  // ghosts, too

@@ -145,7 +145,7 @@ TEST(GripperBesideAJam, HoldsWhatItHoldsUntilItIsToldToLetGo) {
     }
     pipeline.step(at(origins));
   };
-  constexpr double kHeld = 0.007, kLift = 0.004, kJammed = -0.002;
+  constexpr double kHeld = 0.007, kLift = 0.004, kJammed = -0.006;
   for (double gap = 0.016; gap > kHeld - 1e-4; gap -= 0.0005) step(gap, 0.0, 0.016);
   for (double lift = 0.0; lift < kLift + 1e-4; lift += 0.0005) step(kHeld, lift, 0.016);
   step(kHeld, kLift, kJammed);
