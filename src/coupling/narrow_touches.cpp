@@ -150,9 +150,8 @@ bool SlidingContacts::tellsRecesses(const Tissue& tissue) {
   return !tissue.hasTime() && tissue.lastReport().status == SolveStatus::kOk;
 }
 
-// After a solve; false: one goes so far that it is to be solved again. By Newton's step, less what
-// is not known of how the lattice gives way; by less where the last two rounds tell so, as touches
-// come and go with the recess.
+// After a solve; false: one goes so far that it is to be solved again. By less than is asked for
+// where the last two rounds tell so, as touches come and go with the recess.
 bool SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue) {
   if (!tellsRecesses(tissue)) return true;
   bool stay = true;
@@ -163,7 +162,7 @@ bool SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue)
     const double way = asked.depth - recess.depth;
     stay = stay && std::abs(way) <= tuning::kRecessStays * tissue.lattice().spacing();
     const double gone = recess.depth - recess.last_depth, changed = way - recess.last_way;
-    double step = tuning::kOfNewtonsStep * asked.step;
+    double step = asked.step;
     if (gone * changed < 0.0) step = std::min(step, -gone / changed);
     recess.last_way = way;
     recess.last_depth = recess.depth;

@@ -110,7 +110,7 @@ constexpr double kEntryTime = 0.05;
 constexpr double kOffBall = 0.05;
 // Spacings: a recess that is farther from where the force asks for it is followed by another solve.
 // More: forces hang on how the tool came; less: more rounds. Chosen.
-constexpr double kRecessStays = 0.01;
+constexpr double kRecessStays = 0.006;
 // Of the depth (1): how far a ball is taken to reach out by its first touch alone, where others
 // will bear, too. More: large balls that come fast press far too hard in the first solve (of 60 mm,
 // half a millimeter in one load step: 1.4 N for 0.28 in the end); less: small ones begin too deep.
@@ -120,9 +120,6 @@ constexpr double kMostGuessedOutwards = 0.5;
 // of thin tools hang on where nodes are; less: it would be recessed by its own size, and a needle
 // is lost. Chosen.
 constexpr double kLeastThickness = 0.5;
-// Of Newton's step towards another recess of a narrow contact (1). More: it goes to and fro, 1.0
-// takes 1.05 times the cycles of 120 small scenes; less: more rounds. Chosen.
-constexpr double kOfNewtonsStep = 0.75;
 
 // Rims of flat faces.
 // Cosine of the outward normals of an edge in two rounds. Chosen.

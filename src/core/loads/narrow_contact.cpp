@@ -48,6 +48,9 @@ constexpr double kLittleBulge = 0.1;
 constexpr double kMuchBulge = 0.3;
 // Spacings: so far from where it touches the surface may face a box's face. Chosen.
 constexpr double kPressedAround = 1.0;
+// Of Newton's step of a box or a cylinder (1), whose touches come and go. More: it goes to and fro,
+// 1.0 takes 1.1 times the cycles; less: more rounds. Chosen.
+constexpr double kOfNewtonsStep = 0.75;
 // Of the force (1): so much more tells how the depth of a box or a cylinder grows with it.
 constexpr double kMoreForce = 0.01;
 // Of the ball's curvature (1): that of both is no less. Less: where tissue is hollow, as wide as
@@ -113,7 +116,7 @@ Recess recessUnderBody(const NarrowPress& press, const PressedSurface& surface) 
   const double most = kMostOfSpacing * surface.spacing;
   Recess recess;
   recess.depth = std::clamp(share * (here.depth - of_lattice), -most, most);
-  recess.step = growth > 0.0 ? std::clamp(of_lattice / growth, 0.0, 2.0) : 1.0;
+  recess.step = growth > 0.0 ? kOfNewtonsStep * std::clamp(of_lattice / growth, 0.0, 2.0) : 1.0;
   return recess;
 }
 
