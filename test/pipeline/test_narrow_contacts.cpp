@@ -107,7 +107,7 @@ TEST(WideShallowBall, FeelsAsMuchWhereverBetweenNodes) {
     }
   }
   for (std::size_t depth = 0; depth < least.size(); ++depth) {
-    EXPECT_LT(most[depth], 1.045 * least[depth]) << depth;
+    EXPECT_LT(most[depth], 1.035 * least[depth]) << depth;
   }
 }
 
@@ -196,7 +196,7 @@ TEST(BallBesideALoad, FeelsAsBesideWhatIsFixed) {
   patch.displacement = {{0.0, 0.0, 0.0}};
   held.load({1, {patch}});
   const Vec3 inwards = Vec3(1.0, 0.0, 1.0).normalized();
-  for (int step = -2; step <= 5; ++step) {
+  for (int step = -2; step <= 7; ++step) {
     const double depth = 0.05 * kSpacing * step;
     const RobotPose pose = at({Vec3(0.0, kMiddle, 0.0) - (kTip - depth) * inwards});
     const double expected = fixed.step(pose).tools.front().force_on_tool.norm();
