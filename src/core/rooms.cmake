@@ -51,11 +51,12 @@ robot_tissue_room(material
 robot_tissue_room(loads
   USES base config lattice material
   PUBLIC contact_spring.h contact_update.h loading_patch.h narrow_contact.h solve_report.h
-  FILES constrained_state.cpp constrained_state.h contact_spring.cpp dof_constraints.cpp
+  FILES bed_columns.cpp bed_columns.h constrained_state.cpp constrained_state.h contact_spring.cpp dof_constraints.cpp
     dof_constraints.h driven_places.cpp driven_places.h footprint.cpp footprint.h half_space.cpp half_space.h
     loading_patch.cpp local_lattice.cpp local_lattice.h narrow_contact.cpp narrow_contact.h
     patch_bed.cpp patch_bed.h patch_rim.cpp
-    patch_rim.h point_loads.cpp point_loads.h ratio_table.h rim_law.cpp rim_law.h solve_report.cpp suture_thread.cpp suture_thread.h)
+    patch_rim.h point_loads.cpp point_loads.h ratio_table.h rim_law.cpp rim_law.h solve_report.cpp suture_thread.cpp suture_thread.h
+    tool_bed.cpp tool_bed.h)
 robot_tissue_room(saving
   USES base config lattice cutting loads
   FILES bytes.h checked_values.cpp checked_values.h saved_lattice.cpp saved_lattice.h saved_loads.cpp saved_loads.h saved_pieces.cpp

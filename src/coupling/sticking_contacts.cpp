@@ -22,6 +22,7 @@ void StickingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
       const int node = attachment->first;
       const Pose& tissue_T_link = pose.links[at(attachment->second.link)];
       const Vec3 moved = placeOf(attachment->second, pose) - restPosition(*lattice_, *cells_, node);
+      attachment->second.turn = tissue_T_link.linear() * attachment->second.link_R_tissue;
       const Vec3 way_out = tissue_T_link.linear() * attachment->second.pushed;
       const bool leaves = !attachment->second.grasped && letsGo(node, moved, way_out, tissue);
       if (taken_[at(node)] != 0 || leaves) {
@@ -67,10 +68,21 @@ void StickingContacts::keepTouching(const ContactSet& contacts, const Tissue& ti
       touching[at(contact.tool)].insert(carrier.node);
     }
   }
+  // What lies flat on a face touches it at any of its points: a node at the face's edge stays as
+  // long as one beside it touches.
+  const auto isBesideOne = [&](int node, const std::set<int>& others) {
+    return std::any_of(others.begin(), others.end(), [&](int other) {
+      const Vec3 way =
+          restPosition(*lattice_, *cells_, node) - restPosition(*lattice_, *cells_, other);
+      return way.cwiseAbs().maxCoeff() < 1.5 * lattice_->spacing();
+    });
+  };
   for (std::size_t tool = 0; tool < attachments_.size(); ++tool) {
     for (auto attachment = attachments_[tool].begin(); attachment != attachments_[tool].end();) {
       const int node = attachment->first;
-      if (attachment->second.grasped || touching[tool].count(node) != 0) {
+      const bool is_at_edge = !attachment->second.seat.edges.empty() && tissue.rimModuli(node);
+      if (attachment->second.grasped || touching[tool].count(node) != 0 ||
+          (is_at_edge && isBesideOne(node, touching[tool]))) {
         ++attachment;
         continue;
       }
@@ -89,9 +101,7 @@ void StickingContacts::pushOut(const ContactSet& contacts, const Tissue& tissue,
                                const RobotPose& pose) {
   const std::vector<Contact>& all = contacts.contacts;
   std::vector<Push> pushes;
-  for (const Contact& contact : all) {
-    pushes.push_back({supportOf(contact, tissue.surface()), 0.0, 0.0});
-  }
+  for (const Contact& contact : all) pushes.push_back(pushOf(contact, tissue));
   scale(pushes);
   std::map<int, Vec3> motion;
   for (int sweep = 0; sweep < tuning::kPushSweeps; ++sweep) {
@@ -109,6 +119,31 @@ void StickingContacts::pushOut(const ContactSet& contacts, const Tissue& tissue,
   }
 }
 
+// Where springs hold what sticks (Tissue::springsUnder), it goes as a plate does: evenly, and nodes
+// outside and inside of a mesh's surface, one behind the other, alike.
+StickingContacts::Push StickingContacts::pushOf(const Contact& contact,
+                                                const Tissue& tissue) const {
+  Push push;
+  push.support = supportOf(contact, tissue.surface());
+  int axis = 0;
+  contact.normal.cwiseAbs().maxCoeff(&axis);
+  const auto areInOneColumn = [&](int one, int other) {
+    Vec3 way = restPosition(*lattice_, *cells_, one) - restPosition(*lattice_, *cells_, other);
+    way[axis] = 0.0;
+    return way.norm() < 0.5 * lattice_->spacing();
+  };
+  for (Carrier& carrier : push.support) {
+    carrier.way = carrier.weight;
+    if (!tissue.rimModuli(carrier.node)) continue;
+    push.evenly = true;
+    for (const Carrier& other : push.support) {
+      const bool is_behind = &other != &carrier && areInOneColumn(carrier.node, other.node);
+      if (is_behind) carrier.way += other.weight;
+    }
+  }
+  return push;
+}
+
 // Mobilities: a node that sits on a tool already, or is itself a contact's point, keeps its place
 // (kSeatedMobility); the others give way. Row sums: by how much a unit of all multipliers moves
 // each contact's point.
@@ -124,11 +159,12 @@ void StickingContacts::scale(std::vector<Push>& pushes) const {
   for (Push& push : pushes) {
     for (Carrier& carrier : push.support) {
       carrier.mobility = held.count(carrier.node) != 0 ? tuning::kSeatedMobility : 1.0;
-      shared[carrier.node] += carrier.weight;
+      shared[carrier.node] += carrier.way;
     }
   }
   for (Push& push : pushes) {
-    for (const Carrier& carrier : push.support) {
+    for (Carrier& carrier : push.support) {
+      if (push.evenly) carrier.mobility /= shared[carrier.node];
       push.row_sum += carrier.mobility * carrier.weight * shared[carrier.node];
     }
   }
@@ -158,7 +194,7 @@ std::map<int, Vec3> StickingContacts::motionOf(const std::vector<Contact>& conta
   for (std::size_t i = 0; i < pushes.size(); ++i) {
     for (const Carrier& carrier : pushes[i].support) {
       Vec3& moved = motion.emplace(carrier.node, Vec3::Zero()).first->second;
-      moved += carrier.mobility * carrier.weight * pushes[i].multiplier * contacts[i].normal;
+      moved += carrier.mobility * carrier.way * pushes[i].multiplier * contacts[i].normal;
     }
   }
   return motion;
@@ -178,6 +214,13 @@ void StickingContacts::restore(const Attachments& attachments, const Tissue& tis
     for (const auto& [node, attachment] : of_tool)
       places_[node] = tissue.state().displacement[at(node)];
   }
+  for (const LoadingPatch& patch : tissue.patches()) {
+    if (!patch.tool) continue;
+    for (const RimSpring& spring : patch.rim) {
+      const auto place = places_.find(spring.node);
+      if (place != places_.end()) place->second = spring.anchor;
+    }
+  }
 }
 
 std::vector<Vec3> StickingContacts::displacement(const Tissue& tissue) const {
@@ -192,14 +235,42 @@ void StickingContacts::clear() {
   left_.clear();
 }
 
-LoadingPatch StickingContacts::loadingPatch(int tool) const {
+void StickingContacts::tellEdges(const RobotPose& pose, const EdgesAt& edges_at) {
+  for (auto& attachments : attachments_) {
+    std::map<int, Vec3> outward;  // by link: mean of its nodes', as one of them may be off
+    for (const auto& [node, attachment] : attachments)
+      outward[attachment.link] -= pose.links[at(attachment.link)].linear() * attachment.pushed;
+    for (auto& [node, attachment] : attachments) {
+      if (attachment.knows_edges) continue;
+      attachment.knows_edges = true;
+      const Pose& tissue_T_link = pose.links[at(attachment.link)];
+      attachment.link_R_tissue = tissue_T_link.linear().transpose();
+      attachment.turn.setIdentity();
+      const Vec3 facing = outward.at(attachment.link).normalized();
+      Edges edges = edges_at(attachment.link, facing, tissue_T_link * attachment.point);
+      const Vec3 own = -(tissue_T_link.linear() * attachment.pushed).normalized();
+      attachment.seat = {node, own, edges.share, std::move(edges.edges)};
+    }
+  }
+}
+
+// Where all are pushed alike the link's turn is that of any of them.
+LoadingPatch StickingContacts::loadingPatch(int tool, const Tissue& tissue) const {
   LoadingPatch patch;
   patch.name = names_[at(tool)];
   patch.tool = tool;
+  std::vector<SeatedNode> seats;
   for (const auto& [node, attachment] : attachments_[at(tool)]) {
     patch.nodes.push_back(node);
     patch.displacement.push_back(places_.at(node));
+    if (attachment.grasped) continue;
+    if (seats.empty()) patch.place.rotation = attachment.turn;
+    seats.push_back(attachment.seat);
+    seats.back().node = node;
   }
+  if (!seats.empty()) patch.rim = tissue.springsUnder(seats);
+  for (RimSpring& spring : patch.rim) spring.anchor = places_.at(spring.node);
+  if (patch.rim.empty()) patch.place.rotation.setIdentity();
   return patch;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "rim_link.h"
 #include "stopwatch.h"
 #include "tearing.h"
 #include "tuning.h"
@@ -211,7 +212,7 @@ void LoadStepper::follow(std::vector<LoadingPatch> patches) {
 
 // How deep the shape is in tools with rigid patches (m): the others' touches are the solver's.
 double LoadStepper::deepestInRigid(const RobotPose& pose) {
-  return deepest(touch_finder_.stickingAt(pose, world_.tissue.state().displacement));
+  return deepest(touch_finder_.stickingAt(pose, world_.sticking.displacement(world_.tissue)));
 }
 
 // Nodes under a tool with a rigid patch go out of it.
@@ -225,9 +226,25 @@ void LoadStepper::pushRigid(const RobotPose& pose) {
     const auto is_off = [&](const Contact& contact) { return contact.depth_m < -touches; };
     all.erase(std::remove_if(all.begin(), all.end(), is_off), all.end());
     if (pass == 0) world_.sticking.keepTouching(contacts, world_.tissue);
-    if (deepest(contacts) <= 0.0) return;
+    if (deepest(contacts) <= 0.0) break;
     world_.sticking.pushOut(contacts, world_.tissue, pose);
   }
+  world_.sticking.tellEdges(pose, [&](int link, const Vec3& outward, const Vec3& point) {
+    return edgesAround(pose, link, outward, point);
+  });
+}
+
+// Of the flat face that presses there.
+StickingContacts::Edges LoadStepper::edgesAround(const RobotPose& pose, int link,
+                                                 const Vec3& outward, const Vec3& point) const {
+  if (!world_.finder.hasFlatFaces(at(link))) return {};
+  const double spacing = world_.tissue.lattice().spacing();
+  const auto face = world_.finder.flatFace(at(link), pose.links[at(link)], -outward, point,
+                                           tuning::kRimReach * spacing);
+  if (!face) return {};
+  RimLink pressing;
+  pressing.facing = pressing.inwards = -outward;
+  return {rimShare(*face, pressing, spacing), face->edges};
 }
 
 // There is no shape to go back to: one that is none of tissue is kept, and told as unconverged.
@@ -271,7 +288,7 @@ std::vector<LoadingPatch> LoadStepper::touchesAtRest(const RobotPose& pose) {
   std::vector<LoadingPatch> patches;
   if (!touch_finder_.wouldTouchAtRest(pose)) return patches;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    patches.push_back(world_.sticking.loadingPatch(static_cast<int>(tool)));
+    patches.push_back(world_.sticking.loadingPatch(static_cast<int>(tool), world_.tissue));
     patches.back().contacts = world_.sliding.springsOf(static_cast<int>(tool));
   }
   return patches;

@@ -75,6 +75,8 @@ class LoadStepper {
   double wayOfKnownPlaces() const;
   std::vector<LoadingPatch> touchesAtRest(const RobotPose& pose);
   void pushRigid(const RobotPose& pose);
+  StickingContacts::Edges edgesAround(const RobotPose& pose, int link, const Vec3& outward,
+                                      const Vec3& point) const;
   double deepestInRigid(const RobotPose& pose);
   Checkpoint toolsCheckpoint() const;  // without the shape
 

@@ -240,7 +240,7 @@ std::vector<LoadingPatch> patchesOfTools(const World& world) {
     const bool may_push = tool >= world.tools.size() || world.sliding.pushes(index, world.tissue);
     const ContactSprings springs = may_push ? world.sliding.springsOf(index) : ContactSprings();
     if (springs.empty() && !world.sticking.holds(index)) continue;
-    patches.push_back(world.sticking.loadingPatch(index));
+    patches.push_back(world.sticking.loadingPatch(index, world.tissue));
     patches.back().contacts = springs;
   }
   return patches;

@@ -95,7 +95,7 @@ class StickingContactsTest : public ::testing::Test {
   std::vector<LoadingPatch> loadingPatches() const {
     std::vector<LoadingPatch> patches;
     for (int tool = 0; tool < 2; ++tool) {
-      if (patches_.holds(tool)) patches.push_back(patches_.loadingPatch(tool));
+      if (patches_.holds(tool)) patches.push_back(patches_.loadingPatch(tool, tissue_));
     }
     return patches;
   }
@@ -126,7 +126,7 @@ class StickingContactsTest : public ::testing::Test {
 TEST_F(StickingContactsTest, WithoutContactThereIsNoPatch) {
   push({});
   EXPECT_FALSE(patches_.holds(0));
-  EXPECT_TRUE(patches_.loadingPatch(0).nodes.empty());
+  EXPECT_TRUE(patches_.loadingPatch(0, tissue_).nodes.empty());
   EXPECT_TRUE(patches_.nodes(0).empty());
   EXPECT_TRUE(wayOutOf(0).isZero());
   EXPECT_EQ(patches_.displacement(tissue_), tissue_.state().displacement);
@@ -140,7 +140,7 @@ TEST_F(StickingContactsTest, ContactAtAVertexIsPushedOutByItsDepth) {
   EXPECT_TRUE(patches_.nodes(1).empty());
   EXPECT_LT((patches_.displacement(tissue_)[at(middle)] - 1e-3 * normal).norm(), 1e-15);
   EXPECT_LT((wayOutOf(0) - 1e-3 * normal).norm(), 1e-15);
-  const LoadingPatch load = patches_.loadingPatch(0);
+  const LoadingPatch load = patches_.loadingPatch(0, tissue_);
   EXPECT_EQ(load.name, "probe");
   EXPECT_EQ(load.drive, LoadingPatch::Drive::kDisplacement);
   EXPECT_EQ(load.nodes, (std::vector<int>{middle}));
@@ -244,8 +244,8 @@ TEST_F(StickingContactsTest, RidingOfOneToolLeavesTheOther) {
   patches_.ride(pose_, tissue_);
   EXPECT_NEAR(patches_.displacement(tissue_)[at(node(2, 2, 3))].z(), -2e-3, 1e-14);
   EXPECT_NEAR(patches_.displacement(tissue_)[at(node(5, 5, 3))].z(), -5e-4, 1e-14);
-  EXPECT_EQ(patches_.loadingPatch(0).name, "probe");
-  EXPECT_EQ(patches_.loadingPatch(1).name, "jaw");
+  EXPECT_EQ(patches_.loadingPatch(0, tissue_).name, "probe");
+  EXPECT_EQ(patches_.loadingPatch(1, tissue_).name, "jaw");
 }
 
 TEST_F(StickingContactsTest, NodeLiftedAboveItsRestPlaceIsLetGo) {
@@ -317,7 +317,7 @@ TEST_F(StickingContactsTest, GraspedNodesRideOnTheLinkFromWhereTheyAre) {
   const Pose motion = poseAt(Vec3(2e-3, -1e-3, 3e-3), 0.2, Vec3(0.2, 0.1, 1.0));
   pose_.links[1] = motion * pose_.links[1];
   patches_.ride(pose_, tissue_);
-  const LoadingPatch jaw = patches_.loadingPatch(1);
+  const LoadingPatch jaw = patches_.loadingPatch(1, tissue_);
   ASSERT_EQ(jaw.nodes.size(), grasped.size());
   for (std::size_t i = 0; i < grasped.size(); ++i) {
     const Vec3 now =

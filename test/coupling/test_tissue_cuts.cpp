@@ -142,7 +142,7 @@ TEST_F(CutTissue, ToolAtTheCutsEdgeTakesGhostsAlong) {
   ASSERT_EQ(held.size(), 2u);
   EXPECT_EQ(held[0], beside);
   EXPECT_TRUE(tissue_.state().cells->isGhost(held[1]));
-  const SolveReport report = tissue_.follow({patches.loadingPatch(0)}, {});
+  const SolveReport report = tissue_.follow({patches.loadingPatch(0, tissue_)}, {});
   EXPECT_EQ(report.status, SolveStatus::kOk);
   EXPECT_LT(report.patches[0].force.z(), -1e-3);
   EXPECT_NEAR(tissue_.vertices()[at(edge)].z(), contact.point.z() - 1e-3, 1e-6);
@@ -152,7 +152,7 @@ TEST_F(CutTissue, ToolAtTheCutsEdgeTakesGhostsAlong) {
   ASSERT_GT(tissue_.cut(level(1.5)).springs_cut, 0);
   patches.ride(pose, tissue_);
   EXPECT_EQ(patches.nodes(0), held);
-  EXPECT_EQ(tissue_.follow({patches.loadingPatch(0)}, {}).status, SolveStatus::kOk);
+  EXPECT_EQ(tissue_.follow({patches.loadingPatch(0, tissue_)}, {}).status, SolveStatus::kOk);
   for (const int node : held) {
     EXPECT_LT(tissue_.state().displacement[at(node)].z(), -1.9e-3);
     EXPECT_NEAR(tissue_.nodePosition(node).z(),

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "robot_tissue/core/contact_set.h"
 #include "robot_tissue/core/contact_spring.h"
 #include "robot_tissue/core/types.h"
 
@@ -38,6 +39,14 @@ struct RimCompliance {
 
 // Of a node `depth` spacings inside the plate's edge, < 0: beyond it.
 RimCompliance rimCompliance(const RimModuli& moduli, double depth);
+
+// A node that goes with a tool as part of one hard piece. Directions are of the tissue at rest.
+struct SeatedNode {
+  int node = 0;
+  Vec3 outward = Vec3::Zero();  // to the tool
+  double share = 0.0;           // how much of the law of rims holds (1)
+  std::vector<FaceEdge> edges;  // of the tool's flat face, as seen from the node
+};
 
 // Where a patch stands that a force moves: its center moved, then it turned about that.
 struct PatchPlace {

@@ -160,6 +160,10 @@ class Tissue {
   // Of a node `depth` spacings inside a plate's edge, < 0: beyond it (doc/model.md, "The rim").
   // None where cells at the node are filled in part, and where method or model have no rims.
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;
+  // How a tool holds the nodes that it has, ascending: springs to those that are not hard, without
+  // anchors, of stiffness zero to those that it does not hold (core/loads/tool_bed.h). None where
+  // method or model have no rims: all are hard.
+  std::vector<RimSpring> springsUnder(const std::vector<SeatedNode>& nodes) const;
   // The way into the tissue (unit, tissue frame) as if the surface around the point, out to three
   // spacings and up to folds at rest, had no dent; zero where it has no area.
   Vec3 inwardsAround(const SurfacePoint& point) const;

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -58,6 +59,10 @@ class StickingContacts {
     Vec3 point = Vec3::Zero();
     Vec3 point_on_other = Vec3::Zero();  // in the other link's frame
     Vec3 pushed = Vec3::Zero();          // sum of its motions out of the tool (m): its way out
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();           // of the link since it sits there
+    Eigen::Matrix3d link_R_tissue = Eigen::Matrix3d::Identity();  // then
+    bool knows_edges = false;  // hold() or tellEdges() has been there
+    SeatedNode seat;           // as the tissue was when it sat down
   };
   using Attachments =
       std::vector<std::map<int, Attachment>>;  // per tool: node -> seat; ordered, so repeatable
@@ -69,8 +74,18 @@ class StickingContacts {
   // With the tissue in the shape that it had.
   void restore(const Attachments& attachments, const Tissue& tissue);
 
+  // What the law of rims takes of a tool: of the edges of a link's flat face as seen from a point
+  // (m), tissue frame; `outward`: from the tissue to the tool. None: it has no face there.
+  struct Edges {
+    double share = 0.0;  // how much of the law holds (1)
+    std::vector<FaceEdge> edges;
+  };
+  using EdgesAt = std::function<Edges(int link, const Vec3& outward, const Vec3& point)>;
+  // To the nodes that sat down lately.
+  void tellEdges(const RobotPose& pose, const EdgesAt& edges_at);
+
   // The tool's patch; without nodes when it holds none.
-  LoadingPatch loadingPatch(int tool) const;
+  LoadingPatch loadingPatch(int tool, const Tissue& tissue) const;
   // Nodes that left a patch in the last ride.
   const std::vector<int>& left() const { return left_; }
   // The tissue's displacements (m), with the patches where they are now.
@@ -88,15 +103,18 @@ class StickingContacts {
     int node = 0;
     double weight = 0.0;
     double mobility = 1.0;
+    double way = 0.0;  // weight of all nodes of its column: they go alike, as the surface does
   };
   // Of the contact with the same number.
   struct Push {
     std::vector<Carrier> support;
+    bool evenly = false;      // nodes go by the mean of what the contacts around them need
     double row_sum = 0.0;     // how much all contacts together move this one's point
     double multiplier = 0.0;  // m; > 0: the contact pushes
   };
 
   static Vec3 placeOf(const Attachment& attachment, const RobotPose& pose);
+  Push pushOf(const Contact& contact, const Tissue& tissue) const;
   std::vector<Carrier> supportOf(const Contact& contact, const TissueSurface& surface) const;
   void scale(std::vector<Push>& pushes) const;
   static double deepen(const std::vector<Contact>& contacts, const std::map<int, Vec3>& motion,

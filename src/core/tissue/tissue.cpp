@@ -57,6 +57,9 @@ Vec3 Tissue::nodePosition(int node) const { return parts_->data.body.nodePositio
 std::optional<RimModuli> Tissue::rimModuli(int node) const {
   return parts_->forces.rimModuli(node);
 }
+std::vector<RimSpring> Tissue::springsUnder(const std::vector<SeatedNode>& nodes) const {
+  return parts_->forces.springsUnder(nodes);
+}
 std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const {
   return parts_->forces.rimCompliance(node, depth);
 }

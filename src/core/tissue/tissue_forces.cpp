@@ -1,6 +1,7 @@
 #include "tissue/tissue_forces.h"
 
 #include "loads/narrow_contact.h"
+#include "loads/tool_bed.h"
 #include "material/elastic_model.h"
 #include "material/tissue_model.h"
 
@@ -92,6 +93,11 @@ std::optional<RimCompliance> TissueForces::rimCompliance(int node, double depth)
   if (moduli.shear <= 0.0) return std::nullopt;
   const double unit = moduli.shear * data_.body.lattice().spacing();
   return robot_tissue::rimCompliance({unit, poissonRatio(moduli)}, depth);
+}
+
+std::vector<RimSpring> TissueForces::springsUnder(const std::vector<SeatedNode>& nodes) const {
+  if (!data_.methods.now().findsEquilibrium()) return {};
+  return bedOf(data_.body.lattice(), data_.body.model(), data_.body.state(), nodes);
 }
 
 std::optional<Recess> TissueForces::recessUnder(const NarrowPress& press) const {
