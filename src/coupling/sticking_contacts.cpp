@@ -238,8 +238,10 @@ void StickingContacts::clear() {
 void StickingContacts::tellEdges(const RobotPose& pose, const EdgesAt& edges_at) {
   for (auto& attachments : attachments_) {
     std::map<int, Vec3> outward;  // by link: mean of its nodes', as one of them may be off
-    for (const auto& [node, attachment] : attachments)
-      outward[attachment.link] -= pose.links[at(attachment.link)].linear() * attachment.pushed;
+    for (const auto& [node, attachment] : attachments) {
+      outward.emplace(attachment.link, Vec3::Zero()).first->second -=
+          pose.links[at(attachment.link)].linear() * attachment.pushed;
+    }
     for (auto& [node, attachment] : attachments) {
       if (attachment.knows_edges) continue;
       attachment.knows_edges = true;
