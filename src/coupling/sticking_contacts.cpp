@@ -256,23 +256,36 @@ void StickingContacts::tellEdges(const RobotPose& pose, const EdgesAt& edges_at)
   }
 }
 
-// Where all are pushed alike the link's turn is that of any of them.
+// Of several links that turn otherwise, springs turn as the first one does.
 LoadingPatch StickingContacts::loadingPatch(int tool, const Tissue& tissue) const {
   LoadingPatch patch;
   patch.name = names_[at(tool)];
   patch.tool = tool;
+  const std::map<int, Attachment>& attachments = attachments_[at(tool)];
   std::vector<SeatedNode> seats;
-  for (const auto& [node, attachment] : attachments_[at(tool)]) {
-    patch.nodes.push_back(node);
-    patch.displacement.push_back(places_.at(node));
+  for (const auto& [node, attachment] : attachments) {
     if (attachment.grasped) continue;
     if (seats.empty()) patch.place.rotation = attachment.turn;
     seats.push_back(attachment.seat);
     seats.back().node = node;
   }
-  if (!seats.empty()) patch.rim = tissue.springsUnder(seats);
-  for (RimSpring& spring : patch.rim) spring.anchor = places_.at(spring.node);
+  std::set<int> loose;  // nodes that it does not hold
+  if (!seats.empty()) {
+    for (RimSpring spring : tissue.springsUnder(seats)) {
+      spring.anchor = places_.at(spring.node);
+      if (spring.stiffness.isZero(0.0)) {
+        loose.insert(spring.node);
+      } else {
+        patch.rim.push_back(spring);
+      }
+    }
+  }
   if (patch.rim.empty()) patch.place.rotation.setIdentity();
+  for (const auto& [node, attachment] : attachments) {
+    if (loose.count(node) != 0) continue;
+    patch.nodes.push_back(node);
+    patch.displacement.push_back(places_.at(node));
+  }
   return patch;
 }
 
