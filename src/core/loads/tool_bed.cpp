@@ -27,7 +27,7 @@ class ToolBed {
         columns_.springs([&](int node) { return on_plate_.count(node) != 0; });
     std::vector<RimSpring> bed;
     for (const int node : seated) {
-      if (columns_.isHard(node)) continue;
+      if (columns_.isHard(node) || in_column_.count(node) == 0) continue;
       const auto spring = springs.find(node);
       bed.push_back({node, spring == springs.end() ? Vec3::Zero() : spring->second, Vec3::Zero()});
     }
@@ -73,6 +73,9 @@ class ToolBed {
       const int corner = faceCorner(layer->side, r);
       if (cell.owns(corner)) on_plate_.insert(cell.nodes[at(corner)]);
     }
+    for (int corner = 0; corner < kCorners; ++corner) {
+      if (cell.owns(corner)) in_column_.insert(cell.nodes[at(corner)]);
+    }
   }
 
   // Of the joint at the cell's corner, over shear modulus times spacing, along the lattice's axes;
@@ -113,7 +116,8 @@ class ToolBed {
   const std::vector<SeatedNode>& nodes_;
   const CellSet& cells_;
   BedColumns columns_;
-  std::set<int> on_plate_;  // nodes of columns, where the tool is
+  std::set<int> on_plate_;   // nodes of columns, where the tool is
+  std::set<int> in_column_;  // all their nodes; others are hard
 };
 
 }  // namespace
