@@ -73,15 +73,14 @@ struct Body {
 };
 
 // Its tip and which way it points: from the link's origin to the middle of its shapes.
-void findTip(const ContactFinder& finder, std::vector<Vec3> points, Body& body) {
+void findTip(std::vector<Vec3> points, Body& body) {
   Box box;
   for (const Vec3& point : points) box.extend(point);
   const double same = kSameHeight * box.diagonal().norm();
   if (box.center().norm() > same) body.forwards = box.center().normalized();
-  for (const Ball& ball : finder.balls(0)) {
-    const Vec3 foremost = ball.center + ball.radius * body.forwards;
-    const auto out = finder.wayOut(0, Pose::Identity(), foremost, same);
-    if (out && out->depth_m <= same) points.push_back(foremost);  // meshes may be round elsewhere
+  for (const ToolShape& shape : body.tool.links.front().shapes) {
+    if (shape.type != ToolShape::Type::kSphere) continue;
+    points.push_back(shape.pose.translation() + (shape.radius + shape.padding) * body.forwards);
   }
   double farthest = -std::numeric_limits<double>::infinity();
   for (const Vec3& point : points) farthest = std::max(farthest, point.dot(body.forwards));
@@ -108,7 +107,7 @@ std::optional<Body> bodyOf(const ToolGeometry& tool) {
     const ContactFinder finder({body.tool});
     const std::vector<Vec3> points = finder.surfacePoints(0);
     if (points.empty()) continue;
-    findTip(finder, points, body);
+    findTip(points, body);
     return body;
   }
   return std::nullopt;

@@ -52,12 +52,8 @@ std::vector<double> ContactFinder::thicknesses(std::size_t link) const {
   return all;
 }
 
-std::vector<Ball> ContactFinder::balls(std::size_t link) const {
-  return impl_->links[link].balls();
-}
-
-std::vector<BoxOrCylinder> ContactFinder::boxesAndCylinders(std::size_t link) const {
-  return impl_->links[link].boxesAndCylinders();
+std::vector<ToolIndenter> ContactFinder::indenters(std::size_t link) const {
+  return impl_->links[link].indenters();
 }
 
 Box ContactFinder::bounds(std::size_t link, const Pose& tissue_T_link) const {

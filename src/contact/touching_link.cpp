@@ -7,7 +7,7 @@
 #include "inner_points.h"
 #include "link_penetration.h"
 #include "robot_tissue/core/same_bits.h"
-#include "round_tips.h"
+#include "shape_indenter.h"
 #include "triangle_minimum.h"
 
 namespace robot_tissue {
@@ -128,40 +128,14 @@ double TouchingLink::thicknessIn(const Box& box, const Pose& tissue_T_link) cons
   return thinnest.value_or(thickness());
 }
 
-std::vector<Ball> TouchingLink::balls() const {
-  std::vector<Ball> balls;
+std::vector<ToolIndenter> TouchingLink::indenters() const {
+  std::vector<ToolIndenter> indenters;
   for (std::size_t i = 0; i < in_use_; ++i) {
-    const CollisionShape& shape = shapes[i];
-    const Pose& link_T_shape = shape.poseInLink();
-    if (shape.measures().type == ToolShape::Type::kSphere) {
-      balls.push_back({link_T_shape.translation(), shape.measures().radius + shape.padding()});
-    }
-    if (!shape.isMesh()) continue;
-    for (const Ball& tip : roundTips(shape.mesh())) {
-      balls.push_back({link_T_shape * tip.center, tip.radius + shape.padding()});
+    if (auto indenter = indenterOf(shapes[i])) {
+      indenters.push_back({static_cast<int>(i), shapes[i].poseInLink(), std::move(indenter)});
     }
   }
-  return balls;
-}
-
-std::vector<BoxOrCylinder> TouchingLink::boxesAndCylinders() const {
-  std::vector<BoxOrCylinder> bodies;
-  for (std::size_t i = 0; i < in_use_; ++i) {
-    const ToolShape& measures = shapes[i].measures();
-    const double padding = shapes[i].padding();
-    BoxOrCylinder body;
-    body.shape = static_cast<int>(i);
-    body.link_T_shape = shapes[i].poseInLink();
-    if (measures.type == ToolShape::Type::kBox) {
-      body.half_size = 0.5 * measures.size + Vec3::Constant(padding);
-      bodies.push_back(body);
-    } else if (measures.type == ToolShape::Type::kCylinder) {
-      body.radius = measures.radius + padding;
-      body.half_size = Vec3(body.radius, body.radius, 0.5 * measures.length + padding);
-      bodies.push_back(body);
-    }
-  }
-  return bodies;
+  return indenters;
 }
 
 }  // namespace robot_tissue

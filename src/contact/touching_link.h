@@ -33,8 +33,7 @@ class TouchingLink {
   std::vector<Vec3> innerPoints() const;
   double thickness() const;
   double thicknessIn(const Box& box, const Pose& tissue_T_link) const;
-  std::vector<Ball> balls() const;
-  std::vector<BoxOrCylinder> boxesAndCylinders() const;
+  std::vector<ToolIndenter> indenters() const;
   // As ContactFinder::wayOut. Of the same point again, as where a way out along a direction begins,
   // it is known.
   std::optional<WayOut> wayOutAt(const Pose& tissue_T_link, const Vec3& point, double reach) const;

@@ -164,21 +164,7 @@ constexpr std::size_t kWidthDirections = 400;
 // Extents of the tissue (1): a link that is larger was drawn in another unit. Chosen.
 constexpr double kLargestTool = 10.0;
 
-// Round tips of meshes (round_tips.h).
-// Of a tip's radius (1): what vertices are off it at most. More: tips that are less round. Less:
-// meshes that were measured, not drawn, have none. Chosen.
-constexpr double kOffTip = 0.02;
-// Of the radius (1): how far the middle of an edge is inside it at most: an edge over 46 degrees,
-// as the diagonals of a ball of 12 segments. More: coarser meshes count as round. Chosen.
-constexpr double kFacetOfTip = 0.08;
-// Cosine between a vertex's normal and the ball's: 14 degrees. Less: round ends and the side of a
-// rod between them count as a larger ball. Chosen.
-constexpr double kTipNormal = 0.97;
-// Cosine: a tip's normals turn so far from their mean at least: 40 degrees. Less: larger tips only.
-// Chosen.
-constexpr double kLeastTip = 0.766;
-// Of the longest edge at the first vertex (1): the largest radius. What is flatter is as a plane to
-// tissue. Chosen.
-constexpr double kFlattestTip = 1e3;
+// Of a cylinder as what it presses on sees it: 64 are 0.1 % of its radius inside it.
+constexpr int kSidesOfCylinder = 64;
 
 }  // namespace robot_tissue::tuning

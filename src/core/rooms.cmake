@@ -31,12 +31,12 @@ robot_tissue_room(cutting
     cut.cpp cut.h cut_front.cpp cut_front.h removal.cpp removal.h split_cells.cpp split_cells.h tear.cpp tear.h)
 robot_tissue_room(surface
   USES base geometry lattice cutting
-  PUBLIC curved_surface.h surface.h surface_strain.h
+  PUBLIC curved_surface.h surface.h surface_strain.h vertex_triangles.h
   FILES cell_parts.cpp cell_parts.h curved_surface.cpp cut_mesh_surface.cpp cut_mesh_surface.h cut_region.cpp cut_region.h
     divided_grid.cpp
     divided_grid.h held_surface.cpp held_surface.h hinges.cpp hinges.h mean_curvature.cpp mean_curvature.h merged_skin.cpp merged_skin.h mesh_surface.cpp
     mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h smooth_carriers.cpp
-    smooth_carriers.h surface.cpp surface_strain.cpp undented.cpp undented.h)
+    smooth_carriers.h smooth_part.cpp smooth_part.h surface.cpp surface_strain.cpp vertex_triangles.cpp)
 robot_tissue_room(membrane
   USES base simd geometry config surface
   FILES bending_parts.cpp bending_parts.h hinge.cpp hinge.h membrane.cpp membrane.h
@@ -49,10 +49,10 @@ robot_tissue_room(material
     elastic_in_time.cpp elastic_model.cpp elastic_model.h energy_model.h fill_law.cpp fill_law.h inertial_term.h six_spring_model.cpp
     six_spring_model.h reached_displacements.h tissue_model.h viscosity.h)
 robot_tissue_room(loads
-  USES base config lattice material
-  PUBLIC contact_spring.h contact_update.h loading_patch.h narrow_contact.h solve_report.h
+  USES base config geometry lattice material
+  PUBLIC contact_spring.h contact_update.h indenter.h loading_patch.h narrow_contact.h solve_report.h
   FILES bed_columns.cpp bed_columns.h constrained_state.cpp constrained_state.h contact_spring.cpp dof_constraints.cpp
-    dof_constraints.h driven_places.cpp driven_places.h footprint.cpp footprint.h half_space.cpp half_space.h
+    dof_constraints.h driven_places.cpp driven_places.h footprint.cpp footprint.h half_space.cpp half_space.h indenter.cpp
     loading_patch.cpp local_lattice.cpp local_lattice.h narrow_contact.cpp narrow_contact.h
     patch_bed.cpp patch_bed.h patch_rim.cpp
     patch_rim.h point_loads.cpp point_loads.h ratio_table.h rim_law.cpp rim_law.h solve_report.cpp suture_thread.cpp suture_thread.h

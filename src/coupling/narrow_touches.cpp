@@ -2,38 +2,57 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include "rim_touch.h"
+#include "robot_tissue/core/triangle_point.h"
 #include "robot_tissue/coupling/sliding_contacts.h"
 #include "tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-// Where it is farthest along a unit direction, shape's frame (m).
-Vec3 farthestPoint(const BoxOrCylinder& body, const Vec3& direction) {
-  Vec3 farthest;
-  for (int axis = 0; axis < 3; ++axis) {
-    farthest[axis] = std::copysign(body.half_size[axis], direction[axis]);
+using Touches = std::vector<const SlidingContacts::ContactConstraint*>;
+
+// Whether what touches is spread too wide to be narrow (m), as seen along the way.
+bool areSpread(const Touches& touches, const Vec3& axis, double wide) {
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double weights = 0.0;
+  const Vec3 across = axis.unitOrthogonal(), along = axis.cross(across);
+  for (const auto* touch : touches) {
+    const Vec3 off = touch->tool_point - touches.front()->tool_point;
+    const Eigen::Vector2d place(off.dot(across), off.dot(along));
+    const double weight = touch->spring.multiplier;
+    weights += weight;
+    sum += weight * place;
+    squares += weight * place * place.transpose();
   }
-  if (body.radius > 0.0) {
-    farthest.head<2>() = body.radius * direction.head<2>().stableNormalized();
-  }
-  return farthest;
+  const Eigen::Matrix2d spread = squares / weights - sum * sum.transpose() / (weights * weights);
+  const double half = 0.5 * spread.trace();
+  const double least = half - std::sqrt(std::max(0.0, half * half - spread.determinant()));
+  return least > wide * wide;
 }
 
-// The place of it that is nearest, shape's frame (m).
-Vec3 nearestPoint(const BoxOrCylinder& body, const Vec3& place) {
-  Vec3 nearest = place.cwiseMax(-body.half_size).cwiseMin(body.half_size);
-  const double off_axis = place.head<2>().norm();
-  if (body.radius > 0.0 && off_axis > body.radius) {
-    nearest.head<2>() = body.radius / off_axis * place.head<2>();
-  }
-  return nearest;
+double forceOf(const Touches& touches) {
+  double force = 0.0;
+  for (const auto* touch : touches) force += touch->spring.multiplier;
+  return force;
 }
 
-const SlidingContacts::ContactConstraint& hardest(
-    const std::vector<const SlidingContacts::ContactConstraint*>& touches) {
+// Of their force (1), in sum 1; of one alone 1 though it does not push yet.
+std::vector<double> sharesOf(const Touches& touches) {
+  const double force = forceOf(touches);
+  std::vector<double> shares;
+  for (const auto* touch : touches) {
+    shares.push_back(force > 0.0 ? touch->spring.multiplier / force : 1.0);
+  }
+  return shares;
+}
+
+const SlidingContacts::ContactConstraint& hardest(const Touches& touches) {
   using Touch = SlidingContacts::ContactConstraint;
   return **std::max_element(touches.begin(), touches.end(),
                             [](const Touch* one, const Touch* other) {
@@ -65,83 +84,121 @@ void SlidingContacts::forgetRecesses() {
   }
 }
 
-// The link's ball that all of these touch, as a stylus does with its tip.
-const Ball* SlidingContacts::ballUnder(const Touches& touches, const Pose& tissue_T_link,
-                                       const Tissue& tissue) const {
+// The link's shape that all of these touch.
+const ToolIndenter* SlidingContacts::indenterUnder(const Touches& touches,
+                                                   const Tissue& tissue) const {
   if (touches.empty()) return nullptr;
-  const double off = tuning::kOffBall * tissue.lattice().spacing();
-  for (const Ball& ball : forms_[at(touches.front()->contact.link)].balls) {
-    const Vec3 center = tissue_T_link * ball.center;
-    const auto is_on_it = [&](const ContactConstraint* touch) {
-      return std::abs((touch->tool_point - center).norm() - ball.radius) <= off;
-    };
-    if (std::all_of(touches.begin(), touches.end(), is_on_it)) return &ball;
-  }
-  return nullptr;
-}
-
-// The link's box or cylinder that all of these touch.
-const BoxOrCylinder* SlidingContacts::bodyUnder(const Touches& touches,
-                                                const Tissue& tissue) const {
-  if (touches.empty()) return nullptr;
-  const double least = 0.5 * tuning::kLeastThickness * tissue.lattice().spacing();
-  for (const BoxOrCylinder& body : forms_[at(touches.front()->contact.link)].bodies) {
+  const LinkForm& form = forms_[at(touches.front()->contact.link)];
+  const double least = tuning::kLeastThickness * tissue.lattice().spacing();
+  for (const ToolIndenter& tool : form.indenters) {
     const auto is_of_it = [&](const ContactConstraint* touch) {
-      return touch->contact.shape == body.shape;
+      return touch->contact.shape == tool.shape;
     };
-    if (body.half_size.minCoeff() >= least &&
+    if (form.thicknesses[at(tool.shape)] >= least &&
         std::all_of(touches.begin(), touches.end(), is_of_it)) {
-      return &body;
+      return &tool;
     }
   }
   return nullptr;
 }
 
-// By what the link's multipliers are. Balls press the way their forces go, and what is flat the way
-// the surface looks: its touches' normals are those of its faces. Heights of planes are above where
-// the shape is lowest, as seen along that way; the curved surface is off what nodes carry by a
-// bulge, and a rim gives way.
-Recess SlidingContacts::recessAsked(int link, const Pose& tissue_T_link,
-                                    const Tissue& tissue) const {
-  Touches pushing;
-  Vec3 axis = Vec3::Zero();
+// The part of the shape around its hardest touch; nothing where others that count are off it, as on
+// another prong. `facing`: unit, frame of the shape.
+std::shared_ptr<const IndenterPart> SlidingContacts::partUnder(const ToolIndenter& tool,
+                                                               const Touches& touches,
+                                                               const Pose& tissue_T_shape,
+                                                               const Vec3& facing, double spacing) {
+  const ContactConstraint& most = hardest(touches);
+  SeenPart now;
+  now.shape = tool.shape;
+  now.facing = facing;
+  now.triangle = tool.indenter->nearestFacing(facing, tissue_T_shape.inverse() * most.tool_point);
+  if (now.triangle < 0) return nullptr;
+  SeenPart& seen = seen_parts_[at(most.contact.link)];
+  if (seen.shape != now.shape || seen.triangle != now.triangle || seen.facing != facing) {
+    now.part = std::make_shared<const IndenterPart>(
+        tool.indenter->partAround(now.triangle, facing, tuning::kHighestLevel * spacing));
+    seen = std::move(now);
+  }
+  const Box near = grownBy(tuning::kOffPart * spacing, seen.part->bounds);
+  double off_part = 0.0;  // N
+  for (const ContactConstraint* touch : touches) {
+    const bool is_at_rim = touch->contact.rim.is_beyond || !touch->contact.columns.empty();
+    if (is_at_rim || near.contains(Vec3(tissue_T_shape.inverse() * touch->tool_point))) continue;
+    off_part += touch->spring.multiplier;
+  }
+  const bool is_known =
+      !seen.part->levels.empty() && off_part <= tuning::kForceOffPart * forceOf(touches);
+  return is_known ? seen.part : nullptr;
+}
+
+// How these touches, of one link, press together: all but with what. The way is as the surface
+// looks: of what is flat, touches' normals are those of its faces. Heights of planes are above
+// where the shape is lowest, as seen along that way; the curved surface is off what nodes carry by
+// a bulge, and a rim gives way. Nothing: they have no law.
+std::optional<NarrowPress> SlidingContacts::pressOf(const Touches& touches,
+                                                    const Pose& tissue_T_link,
+                                                    const Tissue& tissue) {
+  const double spacing = tissue.lattice().spacing();
+  const ToolIndenter* const tool = indenterUnder(touches, tissue);
+  if (tool == nullptr) return std::nullopt;
+  const ContactConstraint& most = hardest(touches);
   NarrowPress press;
-  for (const ContactConstraint& touch : touches_) {
-    if (touch.contact.link != link || touch.spring.multiplier <= 0.0) continue;
-    pushing.push_back(&touch);
-    press.force += touch.spring.multiplier;
-    axis += touch.spring.multiplier * touch.spring.normal;
+  const std::vector<double> forces = sharesOf(touches);
+  Vec3 apex = Vec3::Zero();
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    apex += forces[i] * touches[i]->tool_point;
+    press.middle += forces[i] * pointOf(touches[i]->corners, touches[i]->contact.place.barycentric);
   }
-  const Ball* const ball = ballUnder(pushing, tissue_T_link, tissue);
-  const BoxOrCylinder* const body = ball == nullptr ? bodyUnder(pushing, tissue) : nullptr;
-  if (ball == nullptr && body == nullptr) return {};
-  press.axis = body == nullptr ? Vec3(axis.normalized())
-                               : tissue.inwardsAround(hardest(pushing).contact.place);
-  if (press.axis.isZero(0.0)) return {};
-  Pose tissue_T_shape = tissue_T_link;
-  Vec3 lowest;
-  if (body != nullptr) {
-    tissue_T_shape = tissue_T_link * body->link_T_shape;
-    press.body = *body;
-    press.facing = tissue_T_shape.linear().transpose() * press.axis;
-    lowest = tissue_T_shape * farthestPoint(*body, press.facing);
-  } else {
-    press.radius = ball->radius;
-    lowest = tissue_T_link * ball->center + ball->radius * press.axis;
+  press.place = most.contact.place;
+  press.axis = tissue.inwardsAround(press.place, press.middle);
+  if (press.axis.isZero(0.0) || areSpread(touches, press.axis, tuning::kWideTouches * spacing)) {
+    return std::nullopt;
   }
+  const Pose tissue_T_shape = tissue_T_link * tool->link_T_shape;
+  const Vec3 facing = tissue_T_shape.linear().transpose() * press.axis;
+  press.part = partUnder(*tool, touches, tissue_T_shape, facing, spacing);
+  if (press.part == nullptr) return std::nullopt;
+  press.apex = tissue_T_shape.inverse() * apex;
+  const Vec3 lowest = tissue_T_shape * press.part->lowest;
   std::map<int, double> shares;
-  for (const ContactConstraint* touch : pushing) {
-    const double share = touch->spring.multiplier / press.force;
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const ContactConstraint* const touch = touches[i];
+    const double share = forces[i];
     Vec3 place = touch->tool_point;
-    if (body != nullptr && touch->contact.wanders) {
-      place = tissue_T_shape * nearestPoint(*body, tissue_T_shape.inverse() * place);
+    if (touch->contact.wanders) {
+      const Vec3 point = tissue_T_shape.inverse() * place;
+      place = tissue_T_shape * tool->indenter->nearestOn(*press.part, point);
     }
     press.height +=
         share * ((lowest - place + touch->contact.bulge).dot(press.axis) + rimRecess(*touch));
+    press.off_apex += share * press.axis.cross(place - apex).squaredNorm();
     for (const auto& [node, weight] : touch->spring.carriers) shares[node] += share * weight;
   }
   for (const auto& [node, share] : shares) press.shares.push_back({node, share});
-  return tissue.recessUnder(press).value_or(Recess());
+  return press;
+}
+
+// No deeper than a part of the shape's thickness.
+Recess SlidingContacts::recessUnder(const NarrowPress& press, const Touches& touches,
+                                    const Tissue& tissue) const {
+  Recess recess = tissue.recessUnder(press).value_or(Recess());
+  const Contact& contact = touches.front()->contact;
+  const double thickness = forms_[at(contact.link)].thicknesses[at(contact.shape)];
+  recess.depth = std::min(recess.depth, tuning::kMostOfThickness * thickness);
+  return recess;
+}
+
+// By what the link's multipliers are.
+Recess SlidingContacts::recessAsked(int link, const Pose& tissue_T_link, const Tissue& tissue) {
+  Touches pushing;
+  for (const ContactConstraint& touch : touches_) {
+    if (touch.contact.link == link && touch.spring.multiplier > 0.0) pushing.push_back(&touch);
+  }
+  std::optional<NarrowPress> press = pressOf(pushing, tissue_T_link, tissue);
+  if (!press) return {};
+  press->force = forceOf(pushing);
+  return recessUnder(*press, pushing, tissue);
 }
 
 // A solve that was cut short tells no forces to go by. Nor in time, where forces swing, and a
@@ -156,7 +213,7 @@ bool SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue)
   if (!tellsRecesses(tissue)) return true;
   bool stay = true;
   for (int link = 0; link < static_cast<int>(forms_.size()); ++link) {
-    if (!forms_[at(link)].mayPressNarrowly()) continue;
+    if (forms_[at(link)].indenters.empty()) continue;
     const Recess asked = recessAsked(link, pose.links[at(link)], tissue);
     LinkRecess& recess = recesses_[at(link)];
     const double way = asked.depth - recess.depth;
@@ -176,31 +233,31 @@ bool SlidingContacts::knowsGrowth(std::size_t link, const RobotPose& pose) const
   return growth_.isKnown(link) || pose.links[link].isApprox(since_links_[link], 0.0);
 }
 
-// Of balls that have only just met the tissue, by how deep they are in it: there is no force yet,
+// Of links that have only just met the tissue, by how deep they are in it: there is no force yet,
 // or it is not known how that grows.
 void SlidingContacts::guessRecesses(const RobotPose& pose, const Tissue& tissue) {
   if (tissue.hasTime()) return;
   for (int link = 0; link < static_cast<int>(forms_.size()); ++link) {
-    if (forms_[at(link)].balls.empty()) continue;
+    if (forms_[at(link)].indenters.empty()) continue;
     const ContactConstraint* deepest = nullptr;
-    NarrowPress press;
+    double depth = 0.0;
     bool pushes = false;
     for (const ContactConstraint& touch : touches_) {
       if (touch.contact.link != link) continue;
       pushes = pushes || touch.spring.multiplier > 0.0;
-      const double depth = touch.recess - gapOf(touch.spring, tissue.state().displacement);
-      if (deepest != nullptr && depth <= press.depth) continue;
+      const double its = touch.recess - gapOf(touch.spring, tissue.state().displacement);
+      if (deepest != nullptr && its <= depth) continue;
       deepest = &touch;
-      press.depth = depth;
+      depth = its;
     }
     if (deepest == nullptr || (pushes && knowsGrowth(at(link), pose))) continue;
-    const Ball* const ball = ballUnder({deepest}, pose.links[at(link)], tissue);
-    press.radius = ball == nullptr ? 0.0 : ball->radius;
-    press.shares = deepest->spring.carriers;
-    press.axis = deepest->spring.normal;
-    const auto guess = ball == nullptr ? std::nullopt : tissue.recessUnder(press);
-    const double most_outwards = tuning::kMostGuessedOutwards * std::max(0.0, press.depth);
-    setRecess(link, std::max(guess.value_or(Recess()).depth, -most_outwards));
+    std::optional<NarrowPress> press = pressOf({deepest}, pose.links[at(link)], tissue);
+    Recess guess;
+    if (press) {
+      press->depth = depth * deepest->spring.normal.dot(press->axis) + press->height;
+      guess = recessUnder(*press, {deepest}, tissue);
+    }
+    setRecess(link, std::max(guess.depth, -tuning::kMostGuessedOutwards * std::max(0.0, depth)));
   }
 }
 

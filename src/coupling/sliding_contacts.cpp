@@ -17,7 +17,8 @@ SlidingContacts::SlidingContacts(std::vector<std::optional<double>> friction,
     : friction_(std::move(friction)),
       forms_(std::move(links)),
       pressed_(friction_.size()),
-      recesses_(forms_.size()) {}
+      recesses_(forms_.size()),
+      seen_parts_(forms_.size()) {}
 
 // The length that slips and gaps are measured by (m): the spacing, or the thickness of a thin link.
 double SlidingContacts::fineness(const Contact& contact, double spacing) const {

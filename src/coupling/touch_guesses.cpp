@@ -15,7 +15,7 @@ namespace robot_tissue {
 void SlidingContacts::growAlongWay(const RobotPose& pose, const Tissue& tissue) {
   const auto asked = [&](std::size_t link) {
     const bool stays = growth_.times(link, pose.links[link]) == 1.0;
-    if (stays || !tellsRecesses(tissue) || !forms_[link].mayPressNarrowly()) return 0.0;
+    if (stays || !tellsRecesses(tissue) || forms_[link].indenters.empty()) return 0.0;
     return recessAsked(static_cast<int>(link), since_links_[link], tissue).depth;
   };
   std::vector<double> depths;  // of recesses, less what the forces of before ask for

@@ -105,9 +105,6 @@ constexpr double kLeastFree = 0.4;
 constexpr double kMostEntry = 0.035;
 constexpr double kEntryTime = 0.05;
 
-// Of the spacing (1): how far from a ball a touch of its may be taken to be, as planes are of where
-// a way out ends. More: what touches beside a ball counts as on it. Chosen.
-constexpr double kOffBall = 0.05;
 // Spacings: a recess that is farther from where the force asks for it is followed by another solve.
 // More: forces hang on how the tool came; less: more rounds. Chosen.
 constexpr double kRecessStays = 0.006;
@@ -116,10 +113,25 @@ constexpr double kRecessStays = 0.006;
 // half a millimeter in one load step: 1.4 N for 0.28 in the end); less: small ones begin too deep.
 // Chosen.
 constexpr double kMostGuessedOutwards = 0.5;
-// Spacings: a box or a cylinder that is thinner has no law of narrow contacts. More: light touches
+// Spacings: shapes are looked at so high over their lowest place, as deep as the
+// law of narrow contacts reaches (narrow_contact.cpp).
+constexpr double kHighestLevel = 1.2;
+// Spacings: what touches a shape so far off the part that is looked at touches another one, as
+// another prong; planes of touches that wander are off the shape. Chosen.
+constexpr double kOffPart = 0.5;
+// Of the force (1): what may touch there. Chosen.
+constexpr double kForceOffPart = 0.1;
+// Spacings: what touches, spread wider than that (standard deviation), is no narrow contact. Less:
+// some are left out; more: what is wide is looked at for nothing. Of a strip as wide as the law
+// reaches, 3 spacings, 1.5 at most.
+constexpr double kWideTouches = 1.6;
+// Spacings: a shape that is thinner has no law of narrow contacts. More: light touches
 // of thin tools hang on where nodes are; less: it would be recessed by its own size, and a needle
 // is lost. Chosen.
-constexpr double kLeastThickness = 0.5;
+constexpr double kLeastThickness = 0.25;
+// Of a shape's thickness (1): its deepest recess. More: thin tools are right farther down; less:
+// tissue comes less far into them. Chosen.
+constexpr double kMostOfThickness = 0.3;
 
 // Rims of flat faces.
 // Cosine of the outward normals of an edge in two rounds. Chosen.

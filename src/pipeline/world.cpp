@@ -28,9 +28,9 @@ std::vector<SlidingContacts::LinkForm> World::linkForms(
     const std::size_t first_jaw = tool.role.has_jaws ? tool.links.size() - 2 : tool.links.size();
     for (std::size_t number = 0; number < tool.links.size(); ++number) {
       const std::size_t link = forms.size();
-      forms.push_back({finder.thicknesses(link), finder.hasMesh(link), finder.balls(link), {}});
+      forms.push_back({finder.thicknesses(link), finder.hasMesh(link), {}});
       // What is between jaws is told by where the tissue is.
-      if (number < first_jaw) forms.back().bodies = finder.boxesAndCylinders(link);
+      if (number < first_jaw) forms.back().indenters = finder.indenters(link);
     }
   }
   return forms;

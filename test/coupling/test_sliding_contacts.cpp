@@ -31,7 +31,7 @@ class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
 
   // No friction: the tissue sticks to it. Of two tools the other one is elsewhere.
   void make(std::optional<double> friction) {
-    contacts_ = SlidingContacts({friction, 0.0}, {{{kThick}, is_uneven_, {}, {}}});
+    contacts_ = SlidingContacts({friction, 0.0}, {{{kThick}, is_uneven_, {}}});
     SolverConfig solver;
     solver.method = "newton";
     tissue_ = std::make_unique<Tissue>(softBlock(), solver);

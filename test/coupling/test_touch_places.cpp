@@ -82,7 +82,7 @@ class TouchedBlock : public ::testing::Test {
   }
 
   Tissue tissue_;
-  SlidingContacts contacts_{{0.0}, {{{1.0}, false, {}, {}}}};
+  SlidingContacts contacts_{{0.0}, {{{1.0}, false, {}}}};
   RobotPose pose_;
 };
 

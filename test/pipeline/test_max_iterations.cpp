@@ -119,7 +119,7 @@ TEST(MaxIterations, TissueThatAToolLeftSettlesOnItsSupport) {
       center = end;
     }
     any = any || pipeline.isLate();
-    for (int update = 0; update < 3; ++update) pipeline.step(at({center}));
+    for (int update = 0; update < 6; ++update) pipeline.step(at({center}));
     EXPECT_FALSE(pipeline.isLate()) << x;
     EXPECT_TRUE(pipeline.stillPose().has_value()) << x;
     EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk) << x;

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "../contact/contact_fixtures.h"
 #include "../core/mesh_fixtures.h"
 #include "pipeline_fixtures.h"
 
@@ -68,7 +70,7 @@ class Press {
     pose.links.front().linear() = Eigen::AngleAxisd(place_.yaw, Vec3::UnitZ()).toRotationMatrix();
     const ToolReport& tool = pipeline_->step(pose).tools.front();
     EXPECT_EQ(pipeline_->tissue().lastReport().status, SolveStatus::kOk) << depth;
-    EXPECT_LT(tool.max_penetration, 0.05 * kSpacing) << "shown where the tool is";
+    EXPECT_LT(tool.max_penetration, 0.07 * kSpacing) << "shown where the tool is";
     return tool;
   }
 
@@ -127,6 +129,68 @@ TEST(NarrowBody, ThatIsTiltedFeelsWhatAFineLatticeFeels) {
           << towards.transpose() << " at " << place.x << ' ' << place.y;
       EXPECT_NEAR(force(meshBlock(), off), fine, 0.25 * fine)
           << towards.transpose() << " on a mesh at " << place.x << ' ' << place.y;
+    }
+  }
+}
+
+// The wall's vertices are none of the top's, or that would seem to bulge: without the law, which
+// knows no face that presses a bulge, it feels up to twice as much.
+TEST(NarrowBody, FeelsAsMuchOnAMeshBesideItsWall) {
+  constexpr double kHalf = 0.006, kBeside = 0.011;  // m
+  for (const double tilt : {0.035, 0.17}) {
+    const double lowest = kHalf * (std::cos(tilt) + std::sin(tilt));
+    const auto force = [&](TissueConfig tissue, double off) {
+      tissue.material.poisson_ratio = kPoisson;
+      Pipeline pipeline(tissue, SolverConfig(), {toolOf(cube(2.0 * kHalf))});
+      for (const double depth : {-kStep, kStep, 2.0 * kStep}) {
+        RobotPose pose = at({Vec3(kBeside, kMiddle + off, kTop + lowest - depth)});
+        pose.links.front().linear() = Eigen::AngleAxisd(tilt, Vec3::UnitX()).toRotationMatrix();
+        pipeline.step(pose);
+      }
+      return pipeline.report().tools.front().force_on_tool.z();
+    };
+    const double fine = force(block("elastic", 0.25 * kSpacing), 0.0);
+    for (const double off : {0.0, 0.25, 0.5, 0.75}) {
+      EXPECT_NEAR(force(meshBlock(), off * kSpacing), fine, 0.25 * fine) << tilt << " at " << off;
+    }
+  }
+}
+
+// Without the law, which only round ends of meshes had, two to ten times that.
+TEST(NarrowMesh, FeelsWhatAFineLatticeFeels) {
+  constexpr double kWide = 0.003, kDeep = 0.0005;  // m
+  std::vector<Eigen::Vector2d> egg = roundEnd(kWide, kWide, 12);
+  for (int i = 11; i >= 0; --i) egg.emplace_back(egg[at(i)].x(), 2.0 * kWide - egg[at(i)].y());
+  for (Eigen::Vector2d& point : egg) point.y() = 2.0 * (point.y() - kWide);
+  for (const auto& [name, triangles] :
+       {std::pair("edge.stl", boxTriangles(Vec3::Constant(2.0 * kWide))),
+        std::pair("egg.stl", revolvedTriangles(egg, 24))}) {
+    ToolShape shape;
+    shape.type = ToolShape::Type::kMesh;
+    shape.resource = writeStl(name, triangles);
+    const bool is_box = triangles.size() == 12;
+    const double lowest = is_box ? std::sqrt(2.0) * kWide : 2.0 * kWide;
+    const auto force = [&](double spacing, const Vec3& off) {
+      TissueConfig tissue = block("elastic", spacing);
+      tissue.material.poisson_ratio = kPoisson;
+      Pipeline pipeline(tissue, SolverConfig(), {toolOf(shape)});
+      for (const double depth : {-kStep, kStep, kDeep}) {
+        RobotPose pose = at({Vec3(kMiddle, kMiddle, kTop + lowest - depth) + off});
+        if (is_box) {
+          pose.links.front().linear() =
+              Eigen::AngleAxisd(0.25 * M_PI, Vec3::UnitX()).toRotationMatrix();
+        }
+        pipeline.step(pose);
+      }
+      EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
+      return pipeline.report().tools.front().force_on_tool.z();
+    };
+    const double fine = force(0.2 * kSpacing, Vec3::Zero());
+    EXPECT_GT(fine, 0.002);
+    for (const Place& place : {kPlaces[0], kPlaces[1], kPlaces[3], kPlaces[6]}) {
+      const Vec3 off = kSpacing * Vec3(place.x, place.y, 0.0);
+      EXPECT_NEAR(force(kSpacing, off), fine, 0.25 * fine)
+          << name << " at " << place.x << ' ' << place.y;
     }
   }
 }

@@ -125,7 +125,7 @@ TEST(FineMesh, CostsAToolNoMoreThanACoarserOne) {
   const auto [on_coarse, coarse] = iterationsAndForce(3);
   const auto [on_fine, fine] = iterationsAndForce(5);
   EXPECT_LT(on_fine, 1.5 * on_coarse);
-  EXPECT_NEAR(fine, coarse, 0.05 * coarse);  // the coarser ball is smaller
+  EXPECT_NEAR(fine, coarse, 0.07 * coarse);  // the coarser ball is smaller
 }
 
 TEST_F(PressedBall, CutUnderLoadStaysClosedAndTheToolStaysOut) {

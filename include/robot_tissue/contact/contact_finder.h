@@ -71,11 +71,8 @@ class ContactFinder {
   double thicknessIn(const Box& box, std::size_t link, const Pose& tissue_T_link) const;
   // Of each of its shapes.
   std::vector<double> thicknesses(std::size_t link) const;
-  // Of its shapes those that are balls, and what parts of its meshes lie on, padding included;
-  // link's frame.
-  std::vector<Ball> balls(std::size_t link) const;
-  // Of its shapes those that are boxes and cylinders, padding included.
-  std::vector<BoxOrCylinder> boxesAndCylinders(std::size_t link) const;
+  // Of its shapes but for planes, padding included.
+  std::vector<ToolIndenter> indenters(std::size_t link) const;
   // Axis-aligned box around the link's shapes in the tissue's frame (m); empty (min > max) without,
   // infinite with a plane.
   Box bounds(std::size_t link, const Pose& tissue_T_link) const;

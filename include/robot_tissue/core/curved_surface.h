@@ -9,6 +9,7 @@
 
 #include "robot_tissue/core/sparse_values.h"
 #include "robot_tissue/core/surface.h"
+#include "robot_tissue/core/vertex_triangles.h"
 
 namespace robot_tissue {
 
@@ -63,7 +64,6 @@ class CurvedSurface {
     std::array<bool, 3> are_found{};
   };
 
-  void takeSurface(const TissueSurface& surface);
   OfTriangle& ofTriangle(int triangle) const;
   const Vec3& triangleNormal(int triangle, OfTriangle& known) const;
   Vec3 cornerNormal(int triangle, std::size_t corner) const;
@@ -73,11 +73,9 @@ class CurvedSurface {
   const MeshTriangle& cornersOf(int triangle) const { return surface_->triangles[at(triangle)]; }
 
   const TissueSurface* surface_ = nullptr;  // that was taken last
-  std::uint64_t revision_ = 0;              // of it; 0: none yet
-  std::vector<int> triangles_;              // of each vertex, ascending
-  std::vector<int> first_;                  // per vertex, in triangles_, and their end
-  std::vector<Vec3> vertices_;              // m
-  std::uint64_t shape_ = 0;                 // counts surfaces, and their vertices
+  VertexTriangles triangles_;
+  std::vector<Vec3> vertices_;  // m
+  std::uint64_t shape_ = 0;     // counts surfaces, and their vertices
   // Tools touch few triangles: of those alone.
   mutable SparseValues<OfTriangle> of_triangles_;
   mutable SparseValues<OfCorners> of_corners_;  // of this shape

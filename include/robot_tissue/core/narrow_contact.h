@@ -1,4 +1,4 @@
-// A ball, a box or a cylinder whose contact is narrower than the lattice tells apart (own).
+// A tool whose contact is narrower than the lattice tells apart (own).
 //
 // Under the force of one touch, or of a few, the surface has a dent of about a spacing, however
 // small the ball: what a light touch feels would hang on where it is between the nodes. How far the
@@ -11,39 +11,29 @@
 // the lattice for forces that share F at its nodes (local_lattice.h) and z the mean height of what
 // touches over the ball's lowest point, the way as the force. What is farther off, as the ground,
 // the lattice tells right. So the ball touches as if its surface were d - c inside it.
-// Of boxes and cylinders, on their faces, ends and sides, d is that of a rectangle or a lying
-// cylinder (loads/footprint.h).
+// Of other shapes d is that of the flat punch among their levels that goes in the least
+// (loads/footprint.h), and c = C F + z + K r^2 / 2, r how far off the apex they touch.
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <vector>
 
+#include "robot_tissue/core/indenter.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
 
-struct Ball {
-  Vec3 center = Vec3::Zero();  // m
-  double radius = 0.0;         // m
-};
-
-// Of a link; a cylinder is along its z.
-struct BoxOrCylinder {
-  int shape = 0;  // number in its link
-  Pose link_T_shape = Pose::Identity();
-  Vec3 half_size = Vec3::Zero();  // m
-  double radius = 0.0;            // of a cylinder (m); 0: a box
-};
-
 struct NarrowPress {
-  double radius = 0.0;                // R of a ball (m); 0: `body` presses
-  std::optional<BoxOrCylinder> body;  // its depth without a force is not known
-  double force = 0.0;                 // F (N); 0: that of `depth`
-  double depth = 0.0;                 // d (m)
-  std::vector<NodeWeight> shares;     // w, sum to 1
-  double height = 0.0;                // z (m)
-  Vec3 axis = Vec3::Zero();           // unit: the way it presses, into the tissue
-  Vec3 facing = Vec3::Zero();         // the same in the frame of `body`
+  std::shared_ptr<const IndenterPart> part;
+  Vec3 apex = Vec3::Zero();        // in its frame: the middle of its force (m)
+  double force = 0.0;              // F (N); 0: that of `depth`
+  double depth = 0.0;              // d (m)
+  std::vector<NodeWeight> shares;  // w, sum to 1
+  double height = 0.0;             // z (m)
+  double off_apex = 0.0;           // mean of r^2 (m^2)
+  SurfacePoint place;              // on the tissue, of what presses hardest
+  Vec3 middle = Vec3::Zero();      // of what presses, at rest (m)
+  Vec3 axis = Vec3::Zero();        // unit: the way it presses, into the tissue
 };
 
 struct Recess {

@@ -164,9 +164,10 @@ class Tissue {
   // anchors, of stiffness zero to those that it does not hold (core/loads/tool_bed.h). None where
   // method or model have no rims: all are hard.
   std::vector<RimSpring> springsUnder(const std::vector<SeatedNode>& nodes) const;
-  // The way into the tissue (unit, tissue frame) as if the surface around the point, out to three
-  // spacings and up to folds at rest, had no dent; zero where it has no area.
-  Vec3 inwardsAround(const SurfacePoint& point) const;
+  // The way into the tissue (unit, tissue frame) as if the surface around `middle` (m, at rest),
+  // out to three spacings and from the point up to folds at rest, had no dent; zero where it has no
+  // area.
+  Vec3 inwardsAround(const SurfacePoint& point, const Vec3& middle) const;
   // How much deeper than the lattice tells the shape goes into the tissue (narrow_contact.h). None
   // where the contact is wide, the tissue is of several materials around it or thinner than two
   // spacings, all that bears it is held, and where the method finds no equilibrium or the model has

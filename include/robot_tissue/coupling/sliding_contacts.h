@@ -28,6 +28,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -86,12 +87,9 @@ class SlidingContacts {
 
   // What is to be known of a link.
   struct LinkForm {
-    std::vector<double> thicknesses;    // of its shapes (m)
-    bool is_uneven = false;             // a mesh: a triangle may lie on it at several places
-    std::vector<Ball> balls;            // among its shapes; link's frame
-    std::vector<BoxOrCylinder> bodies;  // likewise
-
-    bool mayPressNarrowly() const { return !balls.empty() || !bodies.empty(); }
+    std::vector<double> thicknesses;      // of its shapes (m)
+    bool is_uneven = false;               // a mesh: a triangle may lie on it at several places
+    std::vector<ToolIndenter> indenters;  // its shapes but for planes; none: nothing is narrow
   };
 
   SlidingContacts() = default;  // of no tools
@@ -170,6 +168,14 @@ class SlidingContacts {
     int touches = 0;
   };
 
+  // What an indenter of a link faced the tissue with when that was last looked at.
+  struct SeenPart {
+    int shape = -1;
+    int triangle = -1;
+    Vec3 facing = Vec3::Zero();  // frame of the shape
+    std::shared_ptr<const IndenterPart> part;
+  };
+
   // How a link is recessed, and was in the last round (m); `last_way`: how far from what was asked.
   struct LinkRecess {
     double depth = 0.0;
@@ -212,11 +218,15 @@ class SlidingContacts {
   void setRecess(int link, double depth);
   static bool tellsRecesses(const Tissue& tissue);
   bool renewRecesses(const RobotPose& pose, const Tissue& tissue);
-  Recess recessAsked(int link, const Pose& tissue_T_link, const Tissue& tissue) const;
   using Touches = std::vector<const ContactConstraint*>;
-  const Ball* ballUnder(const Touches& touches, const Pose& tissue_T_link,
-                        const Tissue& tissue) const;
-  const BoxOrCylinder* bodyUnder(const Touches& touches, const Tissue& tissue) const;
+  std::optional<NarrowPress> pressOf(const Touches& touches, const Pose& tissue_T_link,
+                                     const Tissue& tissue);
+  Recess recessUnder(const NarrowPress& press, const Touches& touches, const Tissue& tissue) const;
+  Recess recessAsked(int link, const Pose& tissue_T_link, const Tissue& tissue);
+  const ToolIndenter* indenterUnder(const Touches& touches, const Tissue& tissue) const;
+  std::shared_ptr<const IndenterPart> partUnder(const ToolIndenter& tool, const Touches& touches,
+                                                const Pose& tissue_T_shape, const Vec3& facing,
+                                                double spacing);
   void forgetLost(const Held& held);
   void forgetRecesses();
   void softenColumns(const Tissue& tissue);
@@ -233,6 +243,7 @@ class SlidingContacts {
   std::vector<double> plane_shares_;  // per link: of the ways of its planes, that they go (1)
   std::map<std::pair<int, NodeColumn>, double> column_ways_;  // of links: as they give way (m)
   std::vector<LinkRecess> recesses_;                          // per link
+  std::vector<SeenPart> seen_parts_;                          // likewise
   PressGrowth growth_;
   SurfaceCrowding crowding_;
   bool is_settled_ = false;                   // since the last update

@@ -16,11 +16,10 @@ struct PressedSurface {
   SurfaceModuli moduli;
   double curvature = 0.0;   // K (1/m): > 0 where it bulges outwards
   double compliance = 0.0;  // C (m/N)
-  bool is_flat = true;      // C is of the table of point loads
 };
 
-// On a flat surface. What is curved is narrower.
-bool isNarrow(const NarrowPress& press, double spacing, const SurfaceModuli& moduli);
+// Whether there may be a recess; C is not asked.
+bool isNarrow(const NarrowPress& press, const PressedSurface& surface);
 
 // No recess under a contact that is wide.
 Recess recessUnder(const NarrowPress& press, const PressedSurface& surface);

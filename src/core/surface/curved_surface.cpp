@@ -18,38 +18,19 @@ Vec3 CurvedSurface::cornerWeights(const std::vector<Vec3>& rest, const MeshTrian
 }
 
 void CurvedSurface::take(const TissueSurface& surface, const std::vector<Vec3>& vertices) {
-  const bool is_known = revision_ != 0 && revision_ == surface.revision;
+  const bool is_known = !triangles_.take(surface);
   surface_ = &surface;
-  if (!is_known) takeSurface(surface);
+  if (!is_known) of_triangles_.clearFor(surface.triangles.size());
   if (is_known && areSame(vertices, vertices_)) return;
   vertices_ = vertices;
   ++shape_;
   of_corners_.clearFor(surface.triangles.size());
 }
 
-void CurvedSurface::takeSurface(const TissueSurface& surface) {
-  revision_ = surface.revision;
-  first_.assign(surface.rest.size() + 1, 0);
-  for (const MeshTriangle& corners : surface.triangles) {
-    for (const int corner : corners) ++first_[at(corner) + 1];
-  }
-  for (std::size_t vertex = 1; vertex < first_.size(); ++vertex) {
-    first_[vertex] += first_[vertex - 1];
-  }
-  std::vector<int> next(first_.begin(), first_.end() - 1);
-  triangles_.resize(at(first_.back()));
-  for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
-    for (const int corner : surface.triangles[triangle]) {
-      triangles_[at(next[at(corner)]++)] = static_cast<int>(triangle);
-    }
-  }
-  of_triangles_.clearFor(surface.triangles.size());
-}
-
 Vec3 CurvedSurface::doubleAreaAt(int vertex) const {
   Vec3 sum = Vec3::Zero();
-  for (int i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
-    sum += doubleArea(vertices_, cornersOf(triangles_[at(i)]));
+  for (const int triangle : triangles_.around(vertex)) {
+    sum += doubleArea(vertices_, cornersOf(triangle));
   }
   return sum;
 }
@@ -85,8 +66,7 @@ Vec3 CurvedSurface::findCornerNormal(int triangle, std::size_t corner) const {
   const int vertex = cornersOf(triangle)[corner];
   const Vec3 own = ofTriangle(triangle).rest_normal;
   Vec3 sum = Vec3::Zero();
-  for (int i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
-    const int other = triangles_[at(i)];
+  for (const int other : triangles_.around(vertex)) {
     OfTriangle& of_other = ofTriangle(other);
     if (own.dot(of_other.rest_normal) < kSharpFold) continue;
     const MeshTriangle& corners = cornersOf(other);

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "loads/point_loads.h"
+#include "robot_tissue/core/curved_surface.h"
 #include "surface/mean_curvature.h"
+#include "surface/nearest_point.h"
 
 namespace robot_tissue {
 namespace {
@@ -11,6 +13,10 @@ namespace {
 // Spacings: so far around a touch the tissue's curvature is looked at. More: smoother; less: small
 // bumps count. Chosen.
 constexpr double kSeenAround = 2.0;
+
+// Spacings: so far around a touch its way inwards is looked at, wider than dents of narrow
+// contacts. Chosen.
+constexpr double kWiderThanDents = 3.0;
 
 // A node with four cells, none of which is filled, or left by cuts, in part alone.
 bool isInFlatSurface(const CellSet& cells, int node) {
@@ -70,7 +76,7 @@ std::optional<PressedSurface> PressedSurfaces::under(const NarrowPress& press, c
   const auto moduli = LocalLattice::moduliUnder(shares, cells, model);
   PressedSurface surface;
   surface.spacing = body.lattice().spacing();
-  if (!moduli || !isNarrow(press, surface.spacing, *moduli)) return std::nullopt;
+  if (!moduli) return std::nullopt;
   surface.moduli = *moduli;
   const auto is_flat = [&](const NodeWeight& share) {
     return isInFlatSurface(cells, share.node) && !axesHeldBy(patches, share.node) &&
@@ -79,7 +85,10 @@ std::optional<PressedSurface> PressedSurfaces::under(const NarrowPress& press, c
   const auto is_uniform = [&](const NodeWeight& share) {
     return isUniformAround(cells, model, share.node);
   };
-  if (!std::all_of(shares.begin(), shares.end(), is_flat)) {
+  const bool all_flat = std::all_of(shares.begin(), shares.end(), is_flat);
+  if (!all_flat) surface.curvature = curvatureAround(press.place, press.middle, body);
+  if (!isNarrow(press, surface)) return std::nullopt;
+  if (!all_flat) {
     return look(press, body, model, patches, surface) ? std::optional<PressedSurface>(surface)
                                                       : std::nullopt;
   }
@@ -109,12 +118,26 @@ bool PressedSurfaces::look(const NarrowPress& press, const Body& body, const Ela
       !here.isDeep(lattice)) {
     return false;
   }
-  surface.is_flat = false;
   surface.compliance = here.compliance(press.shares);
-  if (!(surface.compliance > 0.0)) return false;  // all of it on what stands, or moves in one piece
-  surface.curvature = meanCurvature(body.surface().rest, here.place(), -here.inwards(),
-                                    kSeenAround * surface.spacing);
-  return true;
+  return surface.compliance > 0.0;  // else all of it is on what stands, or moves in one piece
+}
+
+double PressedSurfaces::curvatureAround(const SurfacePoint& point, const Vec3& middle,
+                                        const Body& body) {
+  const double reach = kSeenAround * body.lattice().spacing();
+  const std::vector<Vec3>& rest = body.surface().rest;
+  parts_.take(body.surface());
+  const SmoothPart part = parts_.around(point, middle, reach, CurvedSurface::kSharpFold);
+  const Vec3 inwards = inwardsAroundDent(body.surface(), rest, part);
+  return inwards.isZero(0.0) ? 0.0 : meanCurvature(rest, part.vertices, middle, -inwards, reach);
+}
+
+Vec3 PressedSurfaces::inwardsAround(const SurfacePoint& point, const Vec3& middle,
+                                    const Body& body) {
+  const double reach = kWiderThanDents * body.lattice().spacing();
+  parts_.take(body.surface());
+  const SmoothPart part = parts_.around(point, middle, reach, CurvedSurface::kSharpFold);
+  return inwardsAroundDent(body.surface(), body.vertices(), part);
 }
 
 }  // namespace robot_tissue

@@ -9,6 +9,7 @@
 
 #include "loads/local_lattice.h"
 #include "loads/narrow_contact.h"
+#include "surface/smooth_part.h"
 #include "tissue/body.h"
 
 namespace robot_tissue {
@@ -21,9 +22,15 @@ class PressedSurfaces {
                                       const ElasticModel& model,
                                       const std::vector<LoadingPatch>& patches);
 
+  // As Tissue.
+  Vec3 inwardsAround(const SurfacePoint& point, const Vec3& middle, const Body& body);
+
  private:
   bool look(const NarrowPress& press, const Body& body, const ElasticModel& model,
             const std::vector<LoadingPatch>& patches, PressedSurface& surface);
+
+  // Mean, at rest (1/m): > 0 where it bulges outwards.
+  double curvatureAround(const SurfacePoint& point, const Vec3& middle, const Body& body);
 
   LocalLattice& around(const NarrowPress& press, const Body& body);
 
@@ -31,6 +38,7 @@ class PressedSurfaces {
   // tools, the node that bears most goes to and fro.
   std::array<LocalLattice, 4> around_;
   std::size_t oldest_ = 0;
+  SmoothParts parts_;
 };
 
 }  // namespace robot_tissue

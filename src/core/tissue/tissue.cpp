@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "material/tissue_model.h"
-#include "surface/undented.h"
 #include "tissue/tissue_parts.h"
 
 namespace robot_tissue {
@@ -63,9 +62,8 @@ std::vector<RimSpring> Tissue::springsUnder(const std::vector<SeatedNode>& nodes
 std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const {
   return parts_->forces.rimCompliance(node, depth);
 }
-Vec3 Tissue::inwardsAround(const SurfacePoint& point) const {
-  constexpr double kWiderThanDents = 3.0;  // spacings: of narrow contacts. Chosen.
-  return inwardsAroundDent(surface(), vertices(), point, kWiderThanDents * lattice().spacing());
+Vec3 Tissue::inwardsAround(const SurfacePoint& point, const Vec3& middle) const {
+  return parts_->forces.inwardsAround(point, middle);
 }
 std::optional<Recess> Tissue::recessUnder(const NarrowPress& press) const {
   return parts_->forces.recessUnder(press);

@@ -95,6 +95,10 @@ std::optional<RimCompliance> TissueForces::rimCompliance(int node, double depth)
   return robot_tissue::rimCompliance({unit, poissonRatio(moduli)}, depth);
 }
 
+Vec3 TissueForces::inwardsAround(const SurfacePoint& point, const Vec3& middle) const {
+  return surfaces_.inwardsAround(point, middle, data_.body);
+}
+
 std::vector<RimSpring> TissueForces::springsUnder(const std::vector<SeatedNode>& nodes) const {
   if (!data_.methods.now().findsEquilibrium()) return {};
   return bedOf(data_.body.lattice(), data_.body.model(), data_.body.state(), nodes);

@@ -20,6 +20,7 @@ class TissueForces {
   double stiffening(int node) const;
   std::optional<RimModuli> rimModuli(int node) const;
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;
+  Vec3 inwardsAround(const SurfacePoint& point, const Vec3& middle) const;
   std::vector<RimSpring> springsUnder(const std::vector<SeatedNode>& nodes) const;
   std::optional<Recess> recessUnder(const NarrowPress& press) const;
 
