@@ -10,11 +10,11 @@ robot_tissue_room(simd
     symmetric_kernel.cpp symmetric_kernel.h vector_clones.h vectors.h workers.cpp workers.h)
 robot_tissue_room(geometry
   USES base
-  PUBLIC cell_fill.h grid.h mesh_checks.h mesh_walls.h triangle_mesh.h triangle_point.h
+  PUBLIC cell_fill.h grid.h mesh_checks.h mesh_walls.h triangle_mesh.h triangle_point.h vertex_triangles.h
   FILES bent_grid.h cell_fill.cpp connected_triangles.cpp connected_triangles.h exact_points.cpp exact_points.h grid.cpp index_hash.h mesh_checks.cpp mesh_columns.cpp
     mesh_columns.h mesh_pieces.cpp mesh_pieces.h mesh_points.cpp mesh_points.h mesh_refinement.cpp mesh_slicing.cpp
     mesh_slicing.h mesh_walls.cpp polygon_triangles.cpp polygon_triangles.h self_intersection.cpp tetrahedron.cpp
-    tetrahedron.h triangle_mesh.cpp tuning.h)
+    tetrahedron.h triangle_mesh.cpp tuning.h vertex_triangles.cpp)
 robot_tissue_room(config
   USES base geometry
   PUBLIC body_load.h name_rules.h removed_space.h scene.h suture.h suture_ranges.h tool_role.h
@@ -31,12 +31,12 @@ robot_tissue_room(cutting
     cut.cpp cut.h cut_front.cpp cut_front.h removal.cpp removal.h split_cells.cpp split_cells.h tear.cpp tear.h)
 robot_tissue_room(surface
   USES base geometry lattice cutting
-  PUBLIC curved_surface.h surface.h surface_strain.h vertex_triangles.h
+  PUBLIC curved_surface.h surface.h surface_strain.h
   FILES cell_parts.cpp cell_parts.h curved_surface.cpp cut_mesh_surface.cpp cut_mesh_surface.h cut_region.cpp cut_region.h
     divided_grid.cpp
     divided_grid.h held_surface.cpp held_surface.h hinges.cpp hinges.h mean_curvature.cpp mean_curvature.h merged_skin.cpp merged_skin.h mesh_surface.cpp
     mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h smooth_carriers.cpp
-    smooth_carriers.h smooth_part.cpp smooth_part.h surface.cpp surface_strain.cpp vertex_triangles.cpp)
+    smooth_carriers.h smooth_part.cpp smooth_part.h surface.cpp surface_strain.cpp)
 robot_tissue_room(membrane
   USES base simd geometry config surface
   FILES bending_parts.cpp bending_parts.h hinge.cpp hinge.h membrane.cpp membrane.h

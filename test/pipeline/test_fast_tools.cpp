@@ -253,7 +253,8 @@ TEST(TwoTools, RigidAndConformingOnesPressSideBySide) {
   const auto& tools = pipeline.report().tools;
   EXPECT_GT(tools[1].force_on_tool.z(), 0.05);
   EXPECT_NEAR(tools[0].force_on_tool.z(), tools[1].force_on_tool.z(),
-              0.6 * tools[1].force_on_tool.z()) << "round rigid ones have no law";
+              0.6 * tools[1].force_on_tool.z())
+      << "round rigid ones have no law";
   EXPECT_LT(tools[1].max_penetration, 0.05 * kSpacing);
   EXPECT_LT(pipeline.forceBalance().unbalanced().norm(), 0.02 * tools[1].force_on_tool.norm());
   walk(pipeline, both(0.003), both(-0.002));

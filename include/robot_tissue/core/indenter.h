@@ -7,6 +7,7 @@
 
 #include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/core/types.h"
+#include "robot_tissue/core/vertex_triangles.h"
 
 namespace robot_tissue {
 
@@ -56,9 +57,8 @@ class Indenter {
 
   double radius_ = 0.0;  // of a ball (m); 0: triangles
   TriangleMesh mesh_;
-  std::vector<Vec3> areas_;        // per triangle: double, along its normal (m^2)
-  std::vector<int> first_around_;  // per vertex, into around_; and one more
-  std::vector<int> around_;        // triangles
+  std::vector<Vec3> areas_;  // per triangle: double, along its normal (m^2)
+  VertexTriangles triangles_;
 };
 
 // A link's shape.

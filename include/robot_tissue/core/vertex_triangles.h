@@ -1,18 +1,19 @@
-// Which triangles of a surface meet at each of its vertices.
+// Which triangles of a mesh meet at each of its vertices.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "robot_tissue/core/surface.h"
+#include "robot_tissue/core/triangle_mesh.h"
 
 namespace robot_tissue {
 
 class VertexTriangles {
  public:
-  // False: it is the surface taken last, as its revision tells (0 never does), and is not looked
-  // at.
-  bool take(const TissueSurface& surface);
+  // False: it is what was taken last, as its revision tells (0 never does), and is not looked at.
+  bool take(const std::vector<MeshTriangle>& triangles, std::size_t vertex_count,
+            std::uint64_t revision = 0);
 
   struct Range {
     const int *first = nullptr, *last = nullptr;
@@ -26,7 +27,7 @@ class VertexTriangles {
   }
 
  private:
-  std::uint64_t revision_ = 0;  // of the surface; 0: none yet
+  std::uint64_t revision_ = 0;  // of what was taken; 0: none yet
   std::vector<int> triangles_;  // of each vertex
   std::vector<int> first_;      // per vertex, in triangles_, and their end
 };

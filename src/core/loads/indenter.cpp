@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 
 #include "robot_tissue/core/triangle_point.h"
@@ -109,10 +108,9 @@ class Levels {
   std::array<Moments, kLevels> whole_;   // of triangles that are below it and across the last
 };
 
-// With half-axes that
-// have its second moments, made less where its area is less than theirs, as that of a ring or
-// of two pieces, by the mean of both. Of rectangles up to 8:1, triangles and rings up to 0.9 of
-// their radius wide that is right to 2 to 6 %.
+// Of half-axes that have its second moments, made less where its area is less than theirs, as that
+// of a ring or of two pieces, by the mean of both. Of rectangles up to 8:1, triangles and rings
+// that is right to 2 %.
 PunchLevel punchOf(const Moments& moments) {
   const Vec3 mean = moments.first / moments.area;
   const Eigen::Matrix3d spread = moments.second / moments.area - mean * mean.transpose();
@@ -143,18 +141,10 @@ double giveOfEllipse(double longer, double shorter) {
   return std::comp_ellint_1(std::sqrt(1.0 - ratio * ratio)) / (M_PI * longer);
 }
 
-Indenter::Indenter(TriangleMesh mesh)
-    : mesh_(std::move(mesh)), first_around_(mesh_.vertices.size() + 1, 0) {
+Indenter::Indenter(TriangleMesh mesh) : mesh_(std::move(mesh)) {
+  triangles_.take(mesh_.triangles, mesh_.vertices.size());
   for (const MeshTriangle& triangle : mesh_.triangles) {
     areas_.push_back(doubleArea(mesh_.vertices, triangle));
-    for (const int vertex : triangle) ++first_around_[at(vertex) + 1];
-  }
-  std::partial_sum(first_around_.begin(), first_around_.end(), first_around_.begin());
-  around_.resize(3 * mesh_.triangles.size());
-  std::vector<int> next(first_around_.begin(), first_around_.end() - 1);
-  for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-    for (const int vertex : mesh_.triangles[i])
-      around_[at(next[at(vertex)]++)] = static_cast<int>(i);
   }
 }
 
@@ -264,8 +254,7 @@ std::vector<int> Indenter::hangingTogether(int triangle, const Vec3& facing, dou
   is_seen[at(triangle)] = 1;
   for (std::size_t next = 0; next < found.size(); ++next) {
     for (const int vertex : mesh_.triangles[at(found[next])]) {
-      for (int i = first_around_[at(vertex)]; i < first_around_[at(vertex) + 1]; ++i) {
-        const int other = around_[at(i)];
+      for (const int other : triangles_.around(vertex)) {
         if (is_seen[at(other)] != 0) continue;
         is_seen[at(other)] = 1;
         if (faces(other, facing) && depthOf(other) > least) found.push_back(other);

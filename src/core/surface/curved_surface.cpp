@@ -18,7 +18,7 @@ Vec3 CurvedSurface::cornerWeights(const std::vector<Vec3>& rest, const MeshTrian
 }
 
 void CurvedSurface::take(const TissueSurface& surface, const std::vector<Vec3>& vertices) {
-  const bool is_known = !triangles_.take(surface);
+  const bool is_known = !triangles_.take(surface.triangles, surface.rest.size(), surface.revision);
   surface_ = &surface;
   if (!is_known) of_triangles_.clearFor(surface.triangles.size());
   if (is_known && areSame(vertices, vertices_)) return;

@@ -7,6 +7,9 @@
 namespace robot_tissue {
 namespace {
 
+// Of the reach (1): so far around the middle the surface tells which way all of it looks. Chosen.
+constexpr double kMiddle = 0.4;
+
 // Whether it is new.
 bool note(SparseValues<char>& known, int number) {
   if (known.find(number) != nullptr) return false;
@@ -22,14 +25,29 @@ Vec3 middleOf(const std::vector<Vec3>& places, const MeshTriangle& corners) {
 
 void SmoothParts::take(const TissueSurface& surface) {
   surface_ = &surface;
-  triangles_.take(surface);
+  triangles_.take(surface.triangles, surface.rest.size(), surface.revision);
 }
 
+// Twice: the point may be beside the middle, where the surface looks elsewhere.
 SmoothPart SmoothParts::around(const SurfacePoint& point, const Vec3& middle, double reach,
                                double fold) {
   const std::vector<Vec3>& rest = surface_->rest;
-  const Vec3 outwards =
-      doubleArea(rest, surface_->triangles[at(point.triangle)]).stableNormalized();
+  const Vec3 outwards = doubleArea(rest, surface_->triangles[at(point.triangle)]);
+  SmoothPart part = lookingLike(outwards.stableNormalized(), point, middle, reach, fold);
+  Vec3 in_the_middle = Vec3::Zero();
+  for (const int triangle : part.triangles) {
+    const MeshTriangle& corners = surface_->triangles[at(triangle)];
+    const bool is_near = (middleOf(rest, corners) - middle).norm() <= kMiddle * reach;
+    if (is_near) in_the_middle += doubleArea(rest, corners);
+  }
+  const Vec3 there = in_the_middle.stableNormalized();
+  if (!(there.dot(outwards) >= fold * outwards.norm())) return part;
+  return lookingLike(there, point, middle, reach, fold);
+}
+
+SmoothPart SmoothParts::lookingLike(const Vec3& outwards, const SurfacePoint& point,
+                                    const Vec3& middle, double reach, double fold) {
+  const std::vector<Vec3>& rest = surface_->rest;
   has_vertex_.clearFor(rest.size());
   has_triangle_.clearFor(surface_->triangles.size());
   SmoothPart part;

@@ -20,11 +20,14 @@ class SmoothParts {
   // Sets the surface that the queries refer to, as VertexTriangles.
   void take(const TissueSurface& surface);
   // What hangs together with the point's triangle over vertices that at rest are within `reach` (m)
-  // of the middle, and looks where that does: by angles of no less a cosine than `fold`. Vertices
-  // within reach, ascending, and triangles whose middles are.
+  // of the middle, and looks where it does around that: by angles of no less a cosine than `fold`.
+  // Vertices within reach, ascending, and triangles whose middles are.
   SmoothPart around(const SurfacePoint& point, const Vec3& middle, double reach, double fold);
 
  private:
+  SmoothPart lookingLike(const Vec3& outwards, const SurfacePoint& point, const Vec3& middle,
+                         double reach, double fold);
+
   const TissueSurface* surface_ = nullptr;
   VertexTriangles triangles_;
   SparseValues<char> has_vertex_, has_triangle_;  // of the query

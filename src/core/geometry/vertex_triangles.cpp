@@ -2,11 +2,12 @@
 
 namespace robot_tissue {
 
-bool VertexTriangles::take(const TissueSurface& surface) {
-  if (revision_ != 0 && revision_ == surface.revision) return false;
-  revision_ = surface.revision;
-  first_.assign(surface.rest.size() + 1, 0);
-  for (const MeshTriangle& corners : surface.triangles) {
+bool VertexTriangles::take(const std::vector<MeshTriangle>& triangles, std::size_t vertex_count,
+                           std::uint64_t revision) {
+  if (revision_ != 0 && revision_ == revision) return false;
+  revision_ = revision;
+  first_.assign(vertex_count + 1, 0);
+  for (const MeshTriangle& corners : triangles) {
     for (const int corner : corners) ++first_[at(corner) + 1];
   }
   for (std::size_t vertex = 1; vertex < first_.size(); ++vertex) {
@@ -14,8 +15,8 @@ bool VertexTriangles::take(const TissueSurface& surface) {
   }
   std::vector<int> next(first_.begin(), first_.end() - 1);
   triangles_.resize(at(first_.back()));
-  for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
-    for (const int corner : surface.triangles[triangle]) {
+  for (std::size_t triangle = 0; triangle < triangles.size(); ++triangle) {
+    for (const int corner : triangles[triangle]) {
       int& place = next[at(corner)];
       triangles_[at(place++)] = static_cast<int>(triangle);
     }
