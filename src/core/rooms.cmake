@@ -1,7 +1,7 @@
 # The rooms of core, from the lowest up, and what each may use: those before it. The test
 # Layering and doc/architecture.md have the same table.
 robot_tissue_room(base
-  PUBLIC carriers.h compat.h contact_set.h deadline.h disjoint_sets.h grid_box.h part_of_way.h robot_pose.h
+  PUBLIC carriers.h compat.h contact_set.h deadline.h disjoint_sets.h golden_section.h grid_box.h part_of_way.h robot_pose.h
     same_bits.h shared_const.h sparse_values.h types.h
   FILES steady_numbers.h text_of.h)
 robot_tissue_room(simd

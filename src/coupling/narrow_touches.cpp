@@ -16,26 +16,6 @@ namespace {
 
 using Touches = std::vector<const SlidingContacts::ContactConstraint*>;
 
-// Whether what touches is spread too wide to be narrow (m), as seen along the way.
-bool areSpread(const Touches& touches, const Vec3& axis, double wide) {
-  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  double weights = 0.0;
-  const Vec3 across = axis.unitOrthogonal(), along = axis.cross(across);
-  for (const auto* touch : touches) {
-    const Vec3 off = touch->tool_point - touches.front()->tool_point;
-    const Eigen::Vector2d place(off.dot(across), off.dot(along));
-    const double weight = touch->spring.multiplier;
-    weights += weight;
-    sum += weight * place;
-    squares += weight * place * place.transpose();
-  }
-  const Eigen::Matrix2d spread = squares / weights - sum * sum.transpose() / (weights * weights);
-  const double half = 0.5 * spread.trace();
-  const double least = half - std::sqrt(std::max(0.0, half * half - spread.determinant()));
-  return least > wide * wide;
-}
-
 double forceOf(const Touches& touches) {
   double force = 0.0;
   for (const auto* touch : touches) force += touch->spring.multiplier;
@@ -50,6 +30,24 @@ std::vector<double> sharesOf(const Touches& touches) {
     shares.push_back(force > 0.0 ? touch->spring.multiplier / force : 1.0);
   }
   return shares;
+}
+
+// Whether what touches is spread too wide to be narrow (m), as seen along the way.
+bool areSpread(const Touches& touches, const std::vector<double>& shares, const Vec3& axis,
+               double wide) {
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  const Vec3 across = axis.unitOrthogonal(), along = axis.cross(across);
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const Vec3 off = touches[i]->tool_point - touches.front()->tool_point;
+    const Eigen::Vector2d place(off.dot(across), off.dot(along));
+    mean += shares[i] * place;
+    squares += shares[i] * place * place.transpose();
+  }
+  const Eigen::Matrix2d spread = squares - mean * mean.transpose();
+  const double half = 0.5 * spread.trace();
+  const double least = half - std::sqrt(std::max(0.0, half * half - spread.determinant()));
+  return least > wide * wide;
 }
 
 const SlidingContacts::ContactConstraint& hardest(const Touches& touches) {
@@ -117,7 +115,7 @@ std::shared_ptr<const IndenterPart> SlidingContacts::partUnder(const ToolIndente
   SeenPart& seen = seen_parts_[at(most.contact.link)];
   if (seen.shape != now.shape || seen.triangle != now.triangle || seen.facing != facing) {
     now.part = std::make_shared<const IndenterPart>(
-        tool.indenter->partAround(now.triangle, facing, tuning::kHighestLevel * spacing));
+        tool.indenter->partAround(now.triangle, facing, kNoRecessFrom * spacing));
     seen = std::move(now);
   }
   const Box near = grownBy(tuning::kOffPart * spacing, seen.part->bounds);
@@ -152,7 +150,8 @@ std::optional<NarrowPress> SlidingContacts::pressOf(const Touches& touches,
   }
   press.place = most.contact.place;
   press.axis = tissue.inwardsAround(press.place, press.middle);
-  if (press.axis.isZero(0.0) || areSpread(touches, press.axis, tuning::kWideTouches * spacing)) {
+  if (press.axis.isZero(0.0) ||
+      areSpread(touches, forces, press.axis, tuning::kWideTouches * spacing)) {
     return std::nullopt;
   }
   const Pose tissue_T_shape = tissue_T_link * tool->link_T_shape;

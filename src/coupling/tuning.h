@@ -113,9 +113,6 @@ constexpr double kRecessStays = 0.006;
 // half a millimeter in one load step: 1.4 N for 0.28 in the end); less: small ones begin too deep.
 // Chosen.
 constexpr double kMostGuessedOutwards = 0.5;
-// Spacings: shapes are looked at so high over their lowest place, as deep as the
-// law of narrow contacts reaches (narrow_contact.cpp).
-constexpr double kHighestLevel = 1.2;
 // Spacings: what touches a shape so far off the part that is looked at touches another one, as
 // another prong; planes of touches that wander are off the shape. Chosen.
 constexpr double kOffPart = 0.5;

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "robot_tissue/core/golden_section.h"
 #include "stopwatch.h"
 #include "touch_finder.h"
 #include "tuning.h"
@@ -13,28 +14,8 @@
 namespace robot_tissue {
 namespace {
 
-// Where in [0, 1] a concave function is highest, by golden sections (Kiefer 1953).
-template <typename Function>
-double highestAt(const Function& value) {
-  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-  double low = 0.0, high = 1.0;
-  double left = high - golden * (high - low), right = low + golden * (high - low);
-  double at_left = value(left), at_right = value(right);
-  for (int step = 0; step < 12; ++step) {
-    if (at_left > at_right) {
-      high = right;
-      right = left, at_right = at_left;
-      left = high - golden * (high - low);
-      at_left = value(left);
-    } else {
-      low = left;
-      left = right, at_left = at_right;
-      right = low + golden * (high - low);
-      at_right = value(right);
-    }
-  }
-  return 0.5 * (low + high);
-}
+// Chosen: to 0.2 % of an edge.
+constexpr int kSectionsOfEdge = 12;
 
 }  // namespace
 
@@ -80,10 +61,10 @@ std::optional<Contact> TouchFinder::goAlong(const RobotPose& pose, const Contact
   Contact contact = touch.contact;
   if (edge) {
     const Vec3 &a = vertices_[at(edge->vertices[0])], &b = vertices_[at(edge->vertices[1])];
-    const double share = highestAt([&](double part) {
+    const double share = lowestBetween(0.0, 1.0, kSectionsOfEdge, [&](double part) {
       const auto out =
           world_.finder.wayOut(link, pose.links[link], a + part * (b - a), 2.0 * reach);
-      return out ? out->depth_m : -2.0 * reach;
+      return out ? -out->depth_m : 2.0 * reach;
     });
     contact.place.barycentric[edge->corners[0]] = 1.0 - share;
     contact.place.barycentric[edge->corners[1]] = share;

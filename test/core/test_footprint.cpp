@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "loads/footprint.h"
+#include "mesh_fixtures.h"
 
 namespace robot_tissue::test_footprint {
 namespace {
@@ -18,13 +19,12 @@ constexpr double kForce = 0.01;   // N
 constexpr double kUpTo = 0.005;   // m
 
 // Rings of a body around z, each (radius, z), from below; their first and last are its middles.
-TriangleMesh revolved(const std::vector<std::pair<double, double>>& outline, int sides,
-                      double squeezed = 1.0) {
+TriangleMesh revolved(const std::vector<std::pair<double, double>>& outline, int sides) {
   TriangleMesh mesh;
   for (const auto& [radius, z] : outline) {
     for (int i = 0; i < sides; ++i) {
       const double angle = 2.0 * M_PI * i / sides;
-      mesh.vertices.emplace_back(radius * std::cos(angle), squeezed * radius * std::sin(angle), z);
+      mesh.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
     }
   }
   for (int ring = 0; ring + 1 < static_cast<int>(outline.size()); ++ring) {
@@ -43,10 +43,8 @@ TriangleMesh cylinder(double radius, double length, int sides = 64) {
 }
 
 TriangleMesh box(double x, double y, double z) {
-  TriangleMesh mesh = cylinder(std::sqrt(0.5), 1.0, 4);
-  const Eigen::AngleAxisd turn(M_PI / 4.0, Vec3::UnitZ());
-  for (Vec3& vertex : mesh.vertices) vertex = (turn * vertex).cwiseProduct(Vec3(x, y, z));
-  return mesh;
+  const Vec3 half = 0.5 * Vec3(x, y, z);
+  return boxMesh(-half, half);
 }
 
 IndenterPart partOf(const TriangleMesh& mesh, const Vec3& towards) {
@@ -105,15 +103,9 @@ TEST(Footprint, OfAConeIsSneddons) {
 
 // Its two pieces are no higher, but do not hang together.
 TEST(Footprint, OfAForkIsThatOfOneProng) {
-  TriangleMesh fork = box(0.002, 0.002, 0.01);
-  const TriangleMesh other = fork;
-  for (const Vec3& vertex : other.vertices) fork.vertices.push_back(vertex + Vec3(0.006, 0.0, 0.0));
-  for (const MeshTriangle& triangle : other.triangles) {
-    MeshTriangle moved = triangle;
-    for (int& vertex : moved) vertex += static_cast<int>(other.vertices.size());
-    fork.triangles.push_back(moved);
-  }
-  EXPECT_DOUBLE_EQ(under(fork, -Vec3::UnitZ()).depth, under(other, -Vec3::UnitZ()).depth);
+  const TriangleMesh prong = box(0.002, 0.002, 0.01);
+  const TriangleMesh fork = joined(prong, moved(prong, Vec3(0.006, 0.0, 0.0)));
+  EXPECT_DOUBLE_EQ(under(fork, -Vec3::UnitZ()).depth, under(prong, -Vec3::UnitZ()).depth);
 }
 
 // A half-space under cells of even pressure, none of which pulls (Love 1929): where a shape of that

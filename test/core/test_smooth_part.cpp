@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "robot_tissue/core/curved_surface.h"
 #include "robot_tissue/core/surface.h"
 #include "surface/mean_curvature.h"
 #include "surface/smooth_part.h"
@@ -40,7 +39,7 @@ SurfacePoint pointIn(int i, int j) { return {2 * (i + kCells * j), Vec3::Constan
 SmoothPart partAround(const TissueSurface& surface, int i, int j, double reach) {
   SmoothParts parts;
   parts.take(surface);
-  return parts.around(pointIn(i, j), kSpacing * Vec3(i, j, 0.0), reach, CurvedSurface::kSharpFold);
+  return parts.around(pointIn(i, j), kSpacing * Vec3(i, j, 0.0), reach);
 }
 
 std::vector<int> allWithin(const TissueSurface& surface, const Vec3& middle) {

@@ -50,6 +50,13 @@ class Indenter {
   Vec3 nearestOn(const IndenterPart& part, const Vec3& point) const;
 
  private:
+  struct Nearest {
+    int triangle = -1;
+    Vec3 place = Vec3::Zero();  // m
+    double square = kInfinity;  // of its distance (m^2)
+  };
+
+  void takeIfNearer(int triangle, const Vec3& point, Nearest& nearest) const;
   bool faces(int triangle, const Vec3& facing) const;
   std::array<Vec3, 3> cornersOf(int triangle) const;
   IndenterPart partOfBall(const Vec3& facing, double up_to) const;

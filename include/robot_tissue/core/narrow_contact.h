@@ -1,18 +1,18 @@
 // A tool whose contact is narrower than the lattice tells apart (own).
 //
 // Under the force of one touch, or of a few, the surface has a dent of about a spacing, however
-// small the ball: what a light touch feels would hang on where it is between the nodes. How far the
+// small the tool: what a light touch feels would hang on where it is between the nodes. How far the
 // tissue gives way under these forces is known without and with the lattice:
 //
-//   d = a^2 / R*,   a^3 = 3 F R* / (4 E*),   E* = 2 mu / (1 - nu)     Hertz (1882), of a half-space
-//   c = C F + z R / R*,   1 / R* = 1 / R + K
+//   d = the least of F C_s / E* + z_s + K q_s / 2 over the tool's punch levels s (indenter.h,
+//       loads/footprint.h), E* = 2 mu / (1 - nu); of a ball Hertz's (1882)
+//   c = C F + z + K r^2 / 2
 //
-// with the ball's radius R, the tissue's mean curvature K at rest, the force F, the compliance C of
-// the lattice for forces that share F at its nodes (local_lattice.h) and z the mean height of what
-// touches over the ball's lowest point, the way as the force. What is farther off, as the ground,
-// the lattice tells right. So the ball touches as if its surface were d - c inside it.
-// Of other shapes d is that of the flat punch among their levels that goes in the least
-// (loads/footprint.h), and c = C F + z + K r^2 / 2, r how far off the apex they touch.
+// with the tissue's mean curvature K at rest, the force F, the compliance C of the lattice for
+// forces that share F at its nodes (local_lattice.h), z the mean height of what touches over the
+// tool's lowest point, the way as the force, and r how far off the middle of the force it touches.
+// What is farther off, as the ground, the lattice tells right. So the tool touches as if its
+// surface were d - c inside it.
 #pragma once
 
 #include <memory>
@@ -22,6 +22,9 @@
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
+
+// Spacings: there is none from a dent of that on. Chosen.
+constexpr double kNoRecessFrom = 1.2;
 
 struct NarrowPress {
   std::shared_ptr<const IndenterPart> part;

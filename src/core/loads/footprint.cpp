@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot_tissue/core/golden_section.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -12,25 +14,6 @@ constexpr int kHalvings = 24;  // to 1e-5
 // Where a part's reach is looked for: it is no less (1) than that of a disc.
 constexpr double kNearerThanDisc = 0.9;
 constexpr int kSections = 14;  // to a thousandth
-
-template <typename Function>
-double lowestBetween(double low, double high, const Function& value) {
-  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-  double left = high - golden * (high - low), right = low + golden * (high - low);
-  double at_left = value(left), at_right = value(right);
-  for (int section = 0; section < kSections; ++section) {
-    if (at_left < at_right) {
-      high = right;
-      right = left, at_right = at_left;
-      at_left = value(left = high - golden * (high - low));
-    } else {
-      low = left;
-      left = right, at_left = at_right;
-      at_right = value(right = low + golden * (high - low));
-    }
-  }
-  return 0.5 * (low + high);
-}
 
 // What of a punch touches tissue that bulges: a part as near to the apex as there is one, no longer
 // and no wider than its reach.
@@ -63,6 +46,7 @@ class PartOfPunch {
     const double of_disc = std::cbrt(0.75 * load / curvature_);
     if (!(of_disc < axes_.maxCoeff())) return axes_.maxCoeff();
     return std::exp(lowestBetween(std::log(kNearerThanDisc * of_disc), std::log(axes_.maxCoeff()),
+                                  kSections,
                                   [&](double log) { return depth(load, std::exp(log)); }));
   }
 

@@ -156,32 +156,25 @@ Indenter Indenter::ball(double radius) {
 
 Vec3 Indenter::nearestOn(const IndenterPart& part, const Vec3& point) const {
   if (radius_ > 0.0) return radius_ * point.stableNormalized();
-  Vec3 nearest = point;
-  double least = kInfinity;
-  for (const int triangle : part.triangles) {
-    const Corners corners = cornersOf(triangle);
-    const Vec3 place = pointOf(corners, nearestInTriangle(point, corners));
-    const double square = (place - point).squaredNorm();
-    if (square >= least) continue;
-    least = square;
-    nearest = place;
-  }
-  return nearest;
+  Nearest nearest{-1, point};
+  for (const int triangle : part.triangles) takeIfNearer(triangle, point, nearest);
+  return nearest.place;
 }
 
 int Indenter::nearestFacing(const Vec3& facing, const Vec3& point) const {
-  int nearest = radius_ > 0.0 ? 0 : -1;
-  double least = kInfinity;
+  if (radius_ > 0.0) return 0;
+  Nearest nearest;
   for (int triangle = 0; triangle < static_cast<int>(areas_.size()); ++triangle) {
-    if (!faces(triangle, facing)) continue;
-    const Corners corners = cornersOf(triangle);
-    const Vec3 place = pointOf(corners, nearestInTriangle(point, corners));
-    const double square = (place - point).squaredNorm();
-    if (square >= least) continue;
-    least = square;
-    nearest = triangle;
+    if (faces(triangle, facing)) takeIfNearer(triangle, point, nearest);
   }
-  return nearest;
+  return nearest.triangle;
+}
+
+void Indenter::takeIfNearer(int triangle, const Vec3& point, Nearest& nearest) const {
+  const Corners corners = cornersOf(triangle);
+  const Vec3 place = pointOf(corners, nearestInTriangle(point, corners));
+  const double square = (place - point).squaredNorm();
+  if (square < nearest.square) nearest = {triangle, place, square};
 }
 
 IndenterPart Indenter::partAround(int triangle, const Vec3& facing, double up_to) const {

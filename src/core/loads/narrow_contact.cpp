@@ -24,11 +24,10 @@ constexpr double kNotShallow = 0.17;
 // The same over the depth (1): round is from the second on (a ball: 1/3), flat up to the first.
 constexpr double kFlat = 0.1;
 constexpr double kRound = 0.25;
-// Spacings: recessed down to a dent of the first, and not at all from the second on. More: right
+// Spacings: recessed down to a dent of so much, and not at all from kNoRecessFrom on. More: right
 // farther down; less: where the tissue's walls stand beside a flat end it is drawn in that by as
 // much as it is recessed, and more. Chosen.
 constexpr double kDown = 0.6;
-constexpr double kFarDown = 1.2;
 // Spacings: the deepest recess. More: right farther down; less: tissue is drawn in the tool less
 // deep. Chosen.
 constexpr double kMostOfSpacing = 0.2;
@@ -67,7 +66,7 @@ struct Press {
                            (1.0 - fadeOut(footprint.height / footprint.depth, kFlat, kRound));
     return fadeOut(half_width / spacing, between(kNarrow, kNarrowIfShallow, shallow),
                    between(kWide, kWideIfShallow, shallow)) *
-           fadeOut(footprint.depth / spacing, kDown, kFarDown);
+           fadeOut(footprint.depth / spacing, kDown, kNoRecessFrom);
   }
 };
 

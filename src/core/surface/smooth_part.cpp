@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "robot_tissue/core/curved_surface.h"
 #include "robot_tissue/core/triangle_mesh.h"
 
 namespace robot_tissue {
@@ -29,11 +30,10 @@ void SmoothParts::take(const TissueSurface& surface) {
 }
 
 // Twice: the point may be beside the middle, where the surface looks elsewhere.
-SmoothPart SmoothParts::around(const SurfacePoint& point, const Vec3& middle, double reach,
-                               double fold) {
+SmoothPart SmoothParts::around(const SurfacePoint& point, const Vec3& middle, double reach) {
   const std::vector<Vec3>& rest = surface_->rest;
   const Vec3 outwards = doubleArea(rest, surface_->triangles[at(point.triangle)]);
-  SmoothPart part = lookingLike(outwards.stableNormalized(), point, middle, reach, fold);
+  SmoothPart part = lookingLike(outwards.stableNormalized(), point, middle, reach);
   Vec3 in_the_middle = Vec3::Zero();
   for (const int triangle : part.triangles) {
     const MeshTriangle& corners = surface_->triangles[at(triangle)];
@@ -41,12 +41,12 @@ SmoothPart SmoothParts::around(const SurfacePoint& point, const Vec3& middle, do
     if (is_near) in_the_middle += doubleArea(rest, corners);
   }
   const Vec3 there = in_the_middle.stableNormalized();
-  if (!(there.dot(outwards) >= fold * outwards.norm())) return part;
-  return lookingLike(there, point, middle, reach, fold);
+  if (!(there.dot(outwards) >= CurvedSurface::kSharpFold * outwards.norm())) return part;
+  return lookingLike(there, point, middle, reach);
 }
 
 SmoothPart SmoothParts::lookingLike(const Vec3& outwards, const SurfacePoint& point,
-                                    const Vec3& middle, double reach, double fold) {
+                                    const Vec3& middle, double reach) {
   const std::vector<Vec3>& rest = surface_->rest;
   has_vertex_.clearFor(rest.size());
   has_triangle_.clearFor(surface_->triangles.size());
@@ -58,7 +58,7 @@ SmoothPart SmoothParts::lookingLike(const Vec3& outwards, const SurfacePoint& po
     if (!note(has_triangle_, triangle)) return;
     const MeshTriangle& corners = surface_->triangles[at(triangle)];
     const Vec3 area = doubleArea(rest, corners);
-    if (area.dot(outwards) < fold * area.norm()) return;
+    if (area.dot(outwards) < CurvedSurface::kSharpFold * area.norm()) return;
     if (is_near(middleOf(rest, corners))) part.triangles.push_back(triangle);
     for (const int corner : corners) {
       if (is_near(rest[at(corner)]) && note(has_vertex_, corner)) part.vertices.push_back(corner);

@@ -20,13 +20,13 @@ class SmoothParts {
   // Sets the surface that the queries refer to, as VertexTriangles.
   void take(const TissueSurface& surface);
   // What hangs together with the point's triangle over vertices that at rest are within `reach` (m)
-  // of the middle, and looks where it does around that: by angles of no less a cosine than `fold`.
+  // of the middle, and looks where it does around that: up to CurvedSurface::kSharpFold.
   // Vertices within reach, ascending, and triangles whose middles are.
-  SmoothPart around(const SurfacePoint& point, const Vec3& middle, double reach, double fold);
+  SmoothPart around(const SurfacePoint& point, const Vec3& middle, double reach);
 
  private:
   SmoothPart lookingLike(const Vec3& outwards, const SurfacePoint& point, const Vec3& middle,
-                         double reach, double fold);
+                         double reach);
 
   const TissueSurface* surface_ = nullptr;
   VertexTriangles triangles_;

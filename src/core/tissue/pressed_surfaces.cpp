@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "loads/point_loads.h"
-#include "robot_tissue/core/curved_surface.h"
 #include "surface/mean_curvature.h"
 #include "surface/nearest_point.h"
 
@@ -127,7 +126,7 @@ double PressedSurfaces::curvatureAround(const SurfacePoint& point, const Vec3& m
   const double reach = kSeenAround * body.lattice().spacing();
   const std::vector<Vec3>& rest = body.surface().rest;
   parts_.take(body.surface());
-  const SmoothPart part = parts_.around(point, middle, reach, CurvedSurface::kSharpFold);
+  const SmoothPart part = parts_.around(point, middle, reach);
   const Vec3 inwards = inwardsAroundDent(body.surface(), rest, part);
   return inwards.isZero(0.0) ? 0.0 : meanCurvature(rest, part.vertices, middle, -inwards, reach);
 }
@@ -136,7 +135,7 @@ Vec3 PressedSurfaces::inwardsAround(const SurfacePoint& point, const Vec3& middl
                                     const Body& body) {
   const double reach = kWiderThanDents * body.lattice().spacing();
   parts_.take(body.surface());
-  const SmoothPart part = parts_.around(point, middle, reach, CurvedSurface::kSharpFold);
+  const SmoothPart part = parts_.around(point, middle, reach);
   return inwardsAroundDent(body.surface(), body.vertices(), part);
 }
 
